@@ -1,0 +1,2 @@
+//! The command `nmt`.
+fn main() {}

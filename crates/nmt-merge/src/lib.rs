@@ -1,0 +1,1 @@
+//! Common edges of adjacent subdomains.

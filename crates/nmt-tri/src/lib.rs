@@ -1,0 +1,1 @@
+//! Triangular meshes of exactly the nodes of a given cloud.
