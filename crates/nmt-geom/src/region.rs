@@ -270,7 +270,7 @@ fn inner_points(region: &Region, tolerance: f64) -> Vec<Point> {
                 continue;
             }
             let normal = [-v[1] / length, v[0] / length];
-            for depth in [4.0 * tolerance, 0.1 * length] {
+            for depth in [0.1 * length, 4.0 * tolerance] {
                 for side in [depth, -depth] {
                     let inner = along(middle, side, normal);
                     if locator.locate(inner) == Location::Inside {

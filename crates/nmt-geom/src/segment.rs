@@ -18,7 +18,7 @@ pub fn nearest_point(p: Point, a: Point, b: Point) -> Point {
     along(a, nearest_fraction(p, a, b), sub(b, a))
 }
 
-/// Distance of `p` from the segment `a b` [D6], in the user's length unit.
+/// Distance of `p` from the segment `a b` \[D6\], in the user's length unit.
 ///
 /// ```
 /// assert_eq!(nmt_geom::segment::distance_to([3.0, 4.0], [-1.0, 0.0], [0.0, 0.0]), 5.0);
@@ -46,7 +46,7 @@ pub fn touch(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// True where the open segments cross and each pair of ends lies on opposite sides of the other segment's line, by
-/// more than `margin`: touching and running along do not count [D10].
+/// more than `margin`: touching and running along do not count \[D10\].
 #[inline]
 pub fn cross_properly(a: Point, b: Point, c: Point, d: Point, margin: f64) -> bool {
     let (ab, cd) = (sub(b, a), sub(d, c));

@@ -28,13 +28,12 @@ impl SegmentIndex {
         let envelope = Bbox::of(segments.iter().flatten().copied());
         let (w, h) = (envelope.width().max(0.0), envelope.height().max(0.0));
         let n = segments.len().max(1) as f64;
-        // Square buckets of about the segments' mean length, but no more buckets than segments can pay for.
-        let length: f64 = segments.iter().map(|[a, b]| crate::point::distance(*a, *b)).sum();
-        let longest = w.max(h);
-        let by_length = length / n;
-        let by_count = (w * h / (BUCKETS_PER_SEGMENT * n)).sqrt();
-        let by_entries = length / (MAX_ENTRIES_PER_SEGMENT * n);
-        let side = by_length.min(by_count.max(longest / (BUCKETS_PER_SEGMENT * n))).max(by_entries);
+        // Square buckets of about the segments' mean length, but no more of them, and no more entries in them, than the
+        // segments can pay for.
+        let total: f64 = segments.iter().map(|[a, b]| crate::point::distance(*a, *b)).sum();
+        let by_count = (w * h / (BUCKETS_PER_SEGMENT * n)).sqrt().max(w.max(h) / (BUCKETS_PER_SEGMENT * n));
+        let by_entries = total / (MAX_ENTRIES_PER_SEGMENT * n);
+        let side = (total / n).max(by_count).max(by_entries);
         let side = if side.is_finite() && side > 0.0 { side } else { 1.0 };
         let count = |extent: f64| ((extent / side).ceil() as usize).clamp(1, (BUCKETS_PER_SEGMENT * n) as usize + 1);
         let shape = [count(w), count(h)];

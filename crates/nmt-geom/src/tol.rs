@@ -6,7 +6,7 @@
 /// both.
 pub const SAME_POINT_REL: f64 = 1.0e-9;
 
-/// Slack of the clearance tests, as a fraction of the *size* [D7].
+/// Slack of the clearance tests, as a fraction of the *size* \[D7\].
 ///
 /// A node exactly at the limit is kept although rounding (1e-16 of the coordinates, a few operations) moves it: 1e-12
 /// is well above that, and far below any spacing.

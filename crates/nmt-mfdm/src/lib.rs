@@ -1,5 +1,61 @@
 //! Stars, moving weighted least squares and the meshless finite difference method for Prandtl torsion.
+//!
+//! The torsion of a prismatic bar: ∇²F = −2Gθ in the section, F = 0 on its outer boundary, an unknown constant with a
+//! condition on its circulation on each hole. Each node has a *star*, its nearest visible nodes; moving weighted least
+//! squares (MWLS) turn a star into a polynomial of the nodal values. The *local* formulation collocates the equation
+//! with these polynomials, the *variational* one blends them over the triangles and tests with hats. Results come from
+//! the blend of polynomials of one order more.
+//!
+//! ```
+//! use nmt_cloud::{CloudParams, Section, generate};
+//! use nmt_curve::Outline;
+//! use nmt_mfdm::{Formulation, SolveParams, TorsionProblem, exact, solve};
+//! use nmt_tri::Mesh;
+//!
+//! // A tube of radii 1/2 and 1 in the local formulation.
+//! let tube = Section { contour: Outline::circle([0.0, 0.0], 1.0), holes: vec![Outline::circle([0.0, 0.0], 0.5)] };
+//! let cloud = generate(&tube, &CloudParams { nodes: [41, 41], irregularity: 0.2, ..CloudParams::default() })?;
+//! let mesh = Mesh::constrained(cloud)?;
+//! let params = SolveParams { formulation: Formulation::Local, ..SolveParams::default() };
+//! let solution = solve(&TorsionProblem::default(), &mesh, &params)?;
+//! assert!((solution.j / exact::ring(0.5, 1.0).j - 1.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod basis;
+mod blend;
+mod circulation;
+mod error;
+pub mod exact;
+mod gauss;
+mod local;
+mod mwls;
+mod parallel;
+mod post;
 mod problem;
+mod repair;
+mod solution;
+mod solve;
+mod solver;
+mod star;
+mod stencils;
+mod system;
+mod variational;
+mod visibility;
+mod weak;
+mod weight;
 
-pub use problem::{Formulation, HoleCondition};
+pub use basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
+pub use blend::{FieldValue, NodalPolynomials, barycentric_gradients};
+pub use error::MfdmError;
+pub use gauss::{Rule, six_points, three_points};
+pub use mwls::{MAX_CONDITION, Mwls};
+pub use post::{Extreme, Extremes, Stress, StressIntegral, extremes, residuals, stress_integrals};
+pub use problem::{Formulation, HoleCondition, Load, TorsionProblem};
+pub use repair::StarOutcome;
+pub use solution::{HoleResult, TorsionSolution};
+pub use solve::{ORDER, RECOVERY_ORDER, SolveParams, Stage, solve, solve_observed};
+pub use star::{StarFinder, default_star};
+pub use stencils::{StarParams, StarReport, Stencil, Stencils};
+pub use visibility::Visibility;
+pub use weight::weight;

@@ -1,11 +1,13 @@
-//! What is solved: the Prandtl problem's formulation and the condition on holes.
+//! What is solved: the Prandtl torsion problem, its formulation, its load, the condition on holes.
+
+use crate::error::MfdmError;
 
 /// How the boundary value problem is discretised; paper, eqs (17) and (18).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// One equation a node, ∇²F = −2Gθ collocated at the interior nodes (17).
     Local,
-    /// The weak form (18): trial functions blended from nodal polynomials, linear hats as test functions [D13].
+    /// The weak form (18): trial functions blended from nodal polynomials, linear hats as test functions \[D13\].
     #[default]
     Variational,
 }
@@ -23,7 +25,7 @@ impl Formulation {
     }
 }
 
-/// What holds on the boundary of a hole [D12].
+/// What holds on the boundary of a hole \[D12\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HoleCondition {
     /// The physics of a hollow section: F is an unknown constant on each hole, with ∮ ∂F/∂n ds = 2GθA.
@@ -42,6 +44,58 @@ impl HoleCondition {
         match self {
             Self::Circulation => "circulation",
             Self::Zero => "zero",
+        }
+    }
+}
+
+/// What the bar is loaded by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// θ, the twist per unit length.
+    Twist(f64),
+    /// T, the torque; the twist follows from J.
+    Torque(f64),
+}
+
+/// The Prandtl problem: ∇²F = −2Gθ, F = 0 on the outer boundary; paper, eqs (16)–(17).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorsionProblem {
+    /// G, the shear modulus; 1 by default.
+    pub shear_modulus: f64,
+    /// Twist or torque; a twist of 1 by default.
+    pub load: Load,
+    /// What holds on holes; circulation by default.
+    pub holes: HoleCondition,
+}
+
+impl Default for TorsionProblem {
+    fn default() -> Self {
+        Self { shear_modulus: 1.0, load: Load::Twist(1.0), holes: HoleCondition::Circulation }
+    }
+}
+
+impl TorsionProblem {
+    /// # Errors
+    /// [`MfdmError::Constant`] where G is not positive, or the load is 0 or not finite.
+    pub(crate) fn check(&self) -> Result<(), MfdmError> {
+        let (quantity, load) = match self.load {
+            Load::Twist(twist) => ("twist", twist),
+            Load::Torque(torque) => ("torque", torque),
+        };
+        if !(self.shear_modulus > 0.0 && self.shear_modulus.is_finite()) {
+            return Err(MfdmError::Constant { quantity: "shear_modulus", value: self.shear_modulus });
+        }
+        if load == 0.0 || !load.is_finite() {
+            return Err(MfdmError::Constant { quantity, value: load });
+        }
+        Ok(())
+    }
+
+    /// θ for a section of torsion constant `j`.
+    pub(crate) fn twist(&self, j: f64) -> f64 {
+        match self.load {
+            Load::Twist(twist) => twist,
+            Load::Torque(torque) => torque / (self.shear_modulus * j),
         }
     }
 }

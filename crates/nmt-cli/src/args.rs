@@ -1,0 +1,140 @@
+//! The options of the command.
+
+use clap::{Parser, Subcommand};
+use nmt::problem::Overrides;
+use std::path::PathBuf;
+
+/// Clouds of nodes, triangular meshes and the torsion of 2D sections by the meshless finite difference method.
+#[derive(Debug, Parser)]
+#[command(name = "nmt", version, about, long_about = None)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Validate a problem file: every fault, the census a solve would have, and warnings
+    Check(CheckArgs),
+    /// Generate the cloud of nodes
+    Nodes(CloudArgs),
+    /// Generate the cloud and its triangular mesh
+    Mesh(CloudArgs),
+    /// Solve the Prandtl torsion problem
+    Solve(SolveArgs),
+}
+
+/// The problem file and its densities.
+#[derive(Debug, clap::Args)]
+pub struct ProblemArgs {
+    /// Problem file (TOML)
+    pub file: PathBuf,
+    /// Densities N_x,N_y of every subdomain, instead of the file's
+    #[arg(long, value_name = "Nx,Ny", value_parser = counts)]
+    pub nodes: Option<[usize; 2]>,
+    /// Seed of the randomisation
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Print the report as JSON on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Keys of [solve], each winning over the file's.
+#[derive(Debug, clap::Args)]
+pub struct SolveKeys {
+    /// Formulation: variational or local
+    #[arg(long)]
+    pub formulation: Option<String>,
+    /// Twist θ per unit length
+    #[arg(long, allow_hyphen_values = true)]
+    pub twist: Option<f64>,
+    /// Torque T, instead of a twist
+    #[arg(long, allow_hyphen_values = true)]
+    pub torque: Option<f64>,
+    /// Condition on holes: circulation or zero
+    #[arg(long)]
+    pub holes: Option<String>,
+    /// Order p of the MWLS polynomial
+    #[arg(long, allow_hyphen_values = true)]
+    pub order: Option<i64>,
+    /// Nodes in a star, the centre included
+    #[arg(long, allow_hyphen_values = true)]
+    pub star: Option<i64>,
+}
+
+/// Options of `nmt check`.
+#[derive(Debug, clap::Args)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    pub problem: ProblemArgs,
+    #[command(flatten)]
+    pub keys: SolveKeys,
+}
+
+/// Options of `nmt nodes` and `nmt mesh`.
+#[derive(Debug, clap::Args)]
+pub struct CloudArgs {
+    #[command(flatten)]
+    pub problem: ProblemArgs,
+    /// Directory for the files (created if need be)
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Options of `nmt solve`.
+#[derive(Debug, clap::Args)]
+pub struct SolveArgs {
+    #[command(flatten)]
+    pub problem: ProblemArgs,
+    #[command(flatten)]
+    pub keys: SolveKeys,
+    /// Directory for the files (created if need be)
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Point at which F and τ are reported; may be repeated
+    #[arg(long, value_name = "x,y", value_parser = point, allow_hyphen_values = true)]
+    pub at: Vec<[f64; 2]>,
+}
+
+impl ProblemArgs {
+    /// What the options change of the file, without keys of [solve].
+    pub fn overrides(&self) -> Overrides {
+        Overrides { nodes: self.nodes, seed: self.seed, ..Overrides::default() }
+    }
+
+    /// What the options change of the file.
+    pub fn overrides_with(&self, keys: &SolveKeys) -> Overrides {
+        Overrides {
+            formulation: keys.formulation.clone(),
+            twist: keys.twist,
+            torque: keys.torque,
+            holes: keys.holes.clone(),
+            order: keys.order,
+            star: keys.star,
+            ..self.overrides()
+        }
+    }
+}
+
+fn pair<T: std::str::FromStr>(text: &str, what: &str) -> Result<[T; 2], String> {
+    let wrong = || format!("expected two {what} with a comma between, such as {}", example(what));
+    let (first, second) = text.split_once(',').ok_or_else(wrong)?;
+    let parse = |part: &str| part.trim().parse().map_err(|_| wrong());
+    Ok([parse(first)?, parse(second)?])
+}
+
+fn example(what: &str) -> &'static str {
+    if what == "counts" { "41,21" } else { "0.5,-0.25" }
+}
+
+fn counts(text: &str) -> Result<[usize; 2], String> {
+    pair(text, "counts")
+}
+
+fn point(text: &str) -> Result<[f64; 2], String> {
+    let point: [f64; 2] = pair(text, "numbers")?;
+    if point.iter().all(|v| v.is_finite()) { Ok(point) } else { Err("expected finite numbers".into()) }
+}

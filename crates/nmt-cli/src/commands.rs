@@ -1,0 +1,37 @@
+//! One function a command: stages of the pipeline, then its files, then its report.
+
+mod check;
+mod mesh;
+mod nodes;
+mod solve;
+
+pub use check::check;
+pub use mesh::mesh;
+pub use nodes::nodes;
+pub use solve::solve;
+
+use crate::args::ProblemArgs;
+use crate::exit::Failure;
+use crate::files::{OutDir, print, read_problem};
+use crate::timing::Stopwatch;
+use nmt::problem::{Overrides, Problem};
+use nmt::report::{Report, text};
+use std::path::Path;
+
+/// Reads and checks the problem.
+fn load(args: &ProblemArgs, overrides: &Overrides) -> Result<Problem, Failure> {
+    let source = read_problem(&args.file)?;
+    Problem::parse(&source.file, &source.text, overrides)
+        .map_err(|errors| Failure::Problem { errors, source_text: source })
+}
+
+/// Completes the report with its times, writes report.json where there is a directory, and prints it.
+fn finish(mut report: Report, watch: &Stopwatch, json: bool, out: Option<&Path>) -> Result<(), Failure> {
+    watch.fill(&mut report);
+    report.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let as_json = report.json().map_err(|error| Failure::Json(error.to_string()))?;
+    if let Some(out) = out {
+        OutDir::create(out)?.write("report.json", &as_json)?;
+    }
+    print(&if json { as_json } else { text(&report) })
+}

@@ -1,0 +1,85 @@
+//! What a cloud is made from: the outlines of a section, and how dense and how irregular it shall be.
+
+use crate::error::CloudError;
+use nmt_curve::Outline;
+
+/// A main contour with holes; checked outlines, the holes inside and apart.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// The main contour; the paper's type 1.
+    pub contour: Outline,
+    /// Its holes; the paper's type 2.
+    pub holes: Vec<Outline>,
+}
+
+impl Section {
+    /// A section without holes.
+    pub fn solid(contour: Outline) -> Self {
+        Self { contour, holes: Vec::new() }
+    }
+
+    /// The outlines, the main contour first.
+    pub fn loops(&self) -> impl Iterator<Item = &Outline> {
+        std::iter::once(&self.contour).chain(&self.holes)
+    }
+
+    /// Name of every edge, by [`nmt_geom::EdgeId`]: those of the contour first, then of each hole.
+    pub fn edge_names(&self) -> Vec<String> {
+        self.loops().flat_map(|outline| outline.edges.iter().map(|edge| edge.name.clone())).collect()
+    }
+}
+
+/// Density and irregularity of a cloud.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CloudParams {
+    /// N_x and N_y, the global densities of (2) and (6), each at least 2; 11 × 11 by default.
+    pub nodes: [usize; 2],
+    /// Densities of each hole relative to its own envelope; by default the contour's N_x/W and N_y/H hold.
+    pub hole_nodes: Vec<Option<[usize; 2]>>,
+    /// Amp of (10), in [0, 0.5); 0, the default, is a regular cloud.
+    pub irregularity: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Least distance of interior nodes from the real boundary in units of max(h_x, h_y), 1/3 by default (8).
+    pub edge_clearance: f64,
+    /// Least distance of interior nodes from boundary nodes in units of max(h_x, h_y), 1/2 by default (9).
+    pub node_clearance: f64,
+}
+
+/// Seed of the randomisation where none is given.
+pub const DEFAULT_SEED: u64 = 20170301;
+
+impl Default for CloudParams {
+    fn default() -> Self {
+        Self {
+            nodes: [11, 11],
+            hole_nodes: Vec::new(),
+            irregularity: 0.0,
+            seed: DEFAULT_SEED,
+            edge_clearance: 1.0 / 3.0,
+            node_clearance: 0.5,
+        }
+    }
+}
+
+impl CloudParams {
+    /// # Errors
+    /// [`CloudError::Parameter`] for the first that is out of range.
+    pub(crate) fn check(&self) -> Result<(), CloudError> {
+        let own = self.hole_nodes.iter().flatten().flatten();
+        for &n in self.nodes.iter().chain(own) {
+            if n < 2 {
+                return Err(CloudError::Parameter { parameter: "nodes", value: n as f64, range: "2, 3, …" });
+            }
+        }
+        let ranges = [
+            ("irregularity", self.irregularity, (0.0..0.5).contains(&self.irregularity), "[0, 0.5)"),
+            ("edge_clearance", self.edge_clearance, (0.0..=2.0).contains(&self.edge_clearance), "[0, 2]"),
+            ("node_clearance", self.node_clearance, (0.0..=2.0).contains(&self.node_clearance), "[0, 2]"),
+        ];
+        match ranges.iter().find(|(_, _, inside, _)| !inside) {
+            Some(&(parameter, value, _, range)) => Err(CloudError::Parameter { parameter, value, range }),
+            None => Ok(()),
+        }
+    }
+}

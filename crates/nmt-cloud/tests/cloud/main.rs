@@ -1,0 +1,8 @@
+//! Whole clouds on whole sections: what the reader of the paper may rely on, recomputed by other means.
+
+mod clearance;
+mod edges;
+mod errors;
+mod numbering;
+mod sections;
+mod units;

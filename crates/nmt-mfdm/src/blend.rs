@@ -1,0 +1,190 @@
+//! Nodal polynomials blended by barycentric coordinates: value and gradient anywhere \[D13\]\[D14\].
+//!
+//! On each triangle the field is Σ λ_a(x)·P_a(x) over its three nodes: continuous, and exact for polynomials of the
+//! order. It is the trial space of the variational form and the recovered field of every result (a partition of unity
+//! of nodal polynomials, as in the FE–meshfree methods of Rajendran and Zhang, 2007).
+
+use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
+use crate::gauss::{Rule, six_points};
+use crate::mwls::Mwls;
+use crate::parallel::map_chunks;
+use crate::repair::sound_star;
+use crate::star::StarFinder;
+use crate::stencils::{StarParams, StarReport};
+use crate::visibility::Visibility;
+use nmt_cloud::Nearest;
+use nmt_geom::point::{cross, sub};
+use nmt_geom::{NodeId, Point, TriId};
+use nmt_tri::{Mesh, barycentric};
+
+/// Value and derivatives of a field at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FieldValue {
+    /// F.
+    pub value: f64,
+    /// [∂F/∂x, ∂F/∂y].
+    pub gradient: [f64; 2],
+    /// ∂²F/∂x² + ∂²F/∂y².
+    pub laplacian: f64,
+}
+
+/// The polynomial of every node of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodalPolynomials {
+    order: usize,
+    coefficients: Vec<f64>, // Taylor coefficients in scaled coordinates, shape (n_nodes, n_monomials)
+    radii: Vec<f64>,        // user's length unit
+    report: StarReport,
+}
+
+impl NodalPolynomials {
+    /// Fits a polynomial of `params.order` to the nodal `values` about every node, from its own star.
+    ///
+    /// A star that carries none of the order gives one of a lower order, at least a constant; the report tells.
+    pub fn fit(mesh: &Mesh, visibility: &Visibility, nearest: &Nearest, params: StarParams, values: &[f64]) -> Self {
+        struct Part {
+            coefficients: Vec<f64>,
+            radii: Vec<f64>,
+            report: StarReport,
+        }
+        let n = n_monomials(params.order);
+        let xy = mesh.xy();
+        let pieces = map_chunks(0..xy.len(), |piece| {
+            let mut finder = StarFinder::new(xy, nearest, visibility);
+            let (mut mwls, mut star) = (Mwls::default(), Vec::new());
+            let mut part = Part { coefficients: Vec::new(), radii: Vec::new(), report: StarReport::default() };
+            for node in piece {
+                let id = NodeId::of(node);
+                let outcome = sound_star(&mut finder, &mut mwls, xy, id, params.order, params.size, &mut star);
+                let mut fitted = [0.0; MAX_MONOMIALS];
+                fitted[0] = values[node];
+                if outcome.order > 0 {
+                    mwls.fit(|k| values[star[k].index()], &mut fitted);
+                }
+                part.coefficients.extend(&fitted[..n]);
+                part.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
+                part.report.add(&outcome, params.order);
+            }
+            part
+        });
+        let mut all = Self {
+            order: params.order,
+            coefficients: Vec::with_capacity(n * xy.len()),
+            radii: Vec::with_capacity(xy.len()),
+            report: StarReport { size: params.size, ..StarReport::default() },
+        };
+        for part in pieces {
+            all.coefficients.extend(part.coefficients);
+            all.radii.extend(part.radii);
+            all.report.hidden_nodes_skipped += part.report.hidden_nodes_skipped;
+            all.report.enlarged += part.report.enlarged;
+            all.report.order_lowered += part.report.order_lowered;
+            all.report.worst_condition = all.report.worst_condition.max(part.report.worst_condition);
+        }
+        all
+    }
+
+    /// Order of the polynomials.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// What became of the stars.
+    pub fn report(&self) -> StarReport {
+        self.report
+    }
+
+    /// The field times `factor`.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.coefficients.iter_mut().for_each(|c| *c *= factor);
+        self
+    }
+
+    fn coefficients(&self, node: NodeId) -> &[f64] {
+        let n = n_monomials(self.order);
+        &self.coefficients[node.index() * n..(node.index() + 1) * n]
+    }
+
+    /// Value and derivatives of a node's own polynomial at that node.
+    pub fn at_node(&self, node: NodeId) -> FieldValue {
+        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
+        let laplacian = if self.order >= 2 { (c[row(2, 0)] + c[row(0, 2)]) / (r * r) } else { 0.0 };
+        FieldValue { value: c[0], gradient: [c[row(1, 0)] / r, c[row(0, 1)] / r], laplacian }
+    }
+
+    /// [∂²/∂x², ∂²/∂x∂y, ∂²/∂y²] of a node's own polynomial at that node.
+    pub fn hessian_at_node(&self, node: NodeId) -> [f64; 3] {
+        if self.order < 2 {
+            return [0.0; 3];
+        }
+        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
+        [row(2, 0), row(1, 1), row(0, 2)].map(|m| c[m] / (r * r))
+    }
+
+    /// Value and derivatives at `p` of the polynomial of `node`, which lies at `centre`.
+    pub fn polynomial(&self, node: NodeId, centre: Point, p: Point) -> FieldValue {
+        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
+        let scaled = [(p[0] - centre[0]) / r, (p[1] - centre[1]) / r];
+        let mut basis = [0.0; MAX_MONOMIALS];
+        monomials(scaled, self.order, &mut basis);
+        // The derivative of hᵃkᵇ/(a! b!) along h is the monomial (a − 1, b): a shift of the coefficients.
+        let shifted = |da: usize, db: usize| -> f64 {
+            let lower = self.order.saturating_sub(da + db);
+            let mut sum = 0.0;
+            for degree in 0..=lower {
+                for b in 0..=degree {
+                    sum += c[row(degree - b + da, b + db)] * basis[row(degree - b, b)];
+                }
+            }
+            sum
+        };
+        let laplacian = if self.order >= 2 { (shifted(2, 0) + shifted(0, 2)) / (r * r) } else { 0.0 };
+        FieldValue { value: shifted(0, 0), gradient: [shifted(1, 0) / r, shifted(0, 1) / r], laplacian }
+    }
+
+    /// Value and derivatives of the blend at `p` in `triangle`.
+    ///
+    /// ∇F = Σ (P_a ∇λ_a + λ_a ∇P_a), ∇²F = Σ (2 ∇λ_a·∇P_a + λ_a ∇²P_a).
+    pub fn blend(&self, mesh: &Mesh, triangle: TriId, p: Point) -> FieldValue {
+        let corners = mesh.corners(triangle);
+        let lambda = barycentric(corners, p);
+        let slopes = barycentric_gradients(corners);
+        let mut field = FieldValue::default();
+        for (a, &node) in mesh.tri_nodes()[triangle.index()].iter().enumerate() {
+            let own = self.polynomial(node, corners[a], p);
+            field.value += lambda[a] * own.value;
+            field.laplacian += lambda[a] * own.laplacian;
+            for d in 0..2 {
+                field.gradient[d] += own.value * slopes[a][d] + lambda[a] * own.gradient[d];
+                field.laplacian += 2.0 * slopes[a][d] * own.gradient[d];
+            }
+        }
+        field
+    }
+
+    /// Integral of a quantity of the blend over a triangle by `rule`.
+    pub fn integrate(&self, mesh: &Mesh, triangle: TriId, rule: &Rule, of: impl Fn(&FieldValue) -> f64) -> f64 {
+        let corners = mesh.corners(triangle);
+        let weighted = rule.points.iter().zip(&rule.weights).map(|(lambda, weight)| {
+            let at = |d: usize| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>();
+            weight * of(&self.blend(mesh, triangle, [at(0), at(1)]))
+        });
+        mesh.area(triangle) * weighted.sum::<f64>()
+    }
+
+    /// ∫F over the whole mesh: six Gauss points a triangle, exact for polynomials of order 3.
+    pub fn volume(&self, mesh: &Mesh) -> f64 {
+        let rule = six_points();
+        let parts = map_chunks(0..mesh.n_triangles(), |piece| {
+            piece.map(|t| self.integrate(mesh, TriId::of(t), &rule, |field| field.value)).collect::<Vec<f64>>()
+        });
+        parts.into_iter().flatten().sum()
+    }
+}
+
+/// ∇λ of the three barycentric coordinates, constant on the triangle; 1/user's length unit.
+#[inline]
+pub fn barycentric_gradients([a, b, c]: [Point; 3]) -> [[f64; 2]; 3] {
+    let twice_area = cross(sub(b, a), sub(c, a));
+    [(b, c), (c, a), (a, b)].map(|(p, q)| [(p[1] - q[1]) / twice_area, (q[0] - p[0]) / twice_area])
+}

@@ -1,0 +1,78 @@
+//! What can go wrong while a problem is solved.
+
+use nmt_geom::Point;
+
+/// What can go wrong while a boundary value problem is solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MfdmError {
+    /// A star is smaller than its polynomial needs or larger than the cloud.
+    #[error(
+        "a star of {star} nodes cannot carry a polynomial of order {order} on a cloud of {n_nodes} nodes; \
+         choose between {least} and {n_nodes}"
+    )]
+    StarSize {
+        /// The size asked for.
+        star: usize,
+        /// The order.
+        order: usize,
+        /// Number of monomials.
+        least: usize,
+        /// Nodes of the cloud.
+        n_nodes: usize,
+    },
+    /// The order has no default star or cannot be used.
+    #[error("order {order} is not available; choose 2")]
+    Order {
+        /// The order asked for.
+        order: usize,
+    },
+    /// A material or load constant is not usable.
+    #[error("{quantity} = {value} must be a finite number other than 0")]
+    Constant {
+        /// Which.
+        quantity: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// Too few visible nodes about a point carry no polynomial.
+    #[error(
+        "the star of node {node} at ({}, {}) cannot carry a polynomial of order {order}, even with {tried} nodes; \
+         give this part of the section more nodes",
+        .at[0], .at[1]
+    )]
+    PoorStar {
+        /// The node.
+        node: usize,
+        /// Where it is.
+        at: Point,
+        /// The least order that would do.
+        order: usize,
+        /// Nodes in the largest star tried.
+        tried: usize,
+    },
+    /// The factorisation met a zero pivot.
+    #[error("the system of {n} equations is singular; use more nodes, or another seed")]
+    Singular {
+        /// Number of unknowns.
+        n: usize,
+    },
+    /// The solver's answer does not satisfy the equations.
+    #[error(
+        "the solution of {n} equations leaves a relative residual of {residual:.1e}, above {limit:.0e}; use more nodes"
+    )]
+    Residual {
+        /// Number of unknowns.
+        n: usize,
+        /// ‖b − Ax‖/‖b‖.
+        residual: f64,
+        /// The largest one allowed.
+        limit: f64,
+    },
+    /// The factorisation does not fit into memory.
+    #[error("the factorisation of {n} equations does not fit into memory; use fewer nodes")]
+    Memory {
+        /// Number of unknowns.
+        n: usize,
+    },
+}

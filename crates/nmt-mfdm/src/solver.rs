@@ -1,0 +1,3 @@
+//! Linear solvers; every solution is checked by its true residual.
+
+pub(crate) mod direct;

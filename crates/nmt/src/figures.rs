@@ -1,0 +1,96 @@
+//! The pictures of a run: nodes, mesh and the four panels of the solution, from the pipeline's data.
+
+use crate::pipeline::SolvedPart;
+use crate::plot::{Caption, Fields, NodeMark, Part, mesh_figure, nodes_figure, solution_figure};
+use crate::problem::Problem;
+use nmt_cloud::{Cloud, NodeKind};
+use nmt_geom::{LoopId, NodeId};
+use nmt_tri::Mesh;
+
+/// What a picture needs of one cloud or mesh, in the plain form that [`crate::plot`] takes.
+struct Drawn<'a> {
+    name: &'a str,
+    cloud: &'a Cloud,
+    marks: Vec<NodeMark>,
+    loops: Vec<Vec<u32>>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl<'a> Drawn<'a> {
+    fn of_cloud(name: &'a str, cloud: &'a Cloud) -> Self {
+        let mark = |node: usize| match cloud.kind(NodeId::of(node)) {
+            NodeKind::Vertex => NodeMark::Vertex,
+            NodeKind::Edge => NodeMark::Edge,
+            NodeKind::Interior => NodeMark::Interior,
+        };
+        let boundary = cloud.boundary();
+        let ring = |k: usize| boundary.loop_segments(LoopId::of(k)).iter().map(|s| s.from.0).collect();
+        Self {
+            name,
+            cloud,
+            marks: (0..cloud.n_nodes()).map(mark).collect(),
+            loops: (0..boundary.n_loops()).map(ring).collect(),
+            triangles: Vec::new(),
+        }
+    }
+
+    fn of_mesh(name: &'a str, mesh: &'a Mesh) -> Self {
+        let triangles = mesh.tri_nodes().iter().map(|nodes| nodes.map(|node| node.0)).collect();
+        Self { triangles, ..Self::of_cloud(name, mesh.cloud()) }
+    }
+
+    fn part(&self) -> Part<'_> {
+        Part {
+            name: self.name,
+            xy: self.cloud.xy(),
+            marks: &self.marks,
+            loops: &self.loops,
+            triangles: &self.triangles,
+        }
+    }
+}
+
+fn caption(problem: &Problem) -> Caption<'_> {
+    Caption { title: &problem.title, units: &problem.units }
+}
+
+/// nodes.svg of clouds.
+pub fn nodes_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str, &'a Cloud)>) -> String {
+    let drawn: Vec<Drawn> = parts.into_iter().map(|(name, cloud)| Drawn::of_cloud(name, cloud)).collect();
+    nodes_figure(&caption(problem), &drawn.iter().map(Drawn::part).collect::<Vec<_>>())
+}
+
+/// mesh.svg of meshes.
+pub fn mesh_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str, &'a Mesh)>) -> String {
+    let drawn: Vec<Drawn> = parts.into_iter().map(|(name, mesh)| Drawn::of_mesh(name, mesh)).collect();
+    mesh_figure(&caption(problem), &drawn.iter().map(Drawn::part).collect::<Vec<_>>())
+}
+
+/// solution.svg: F, τ_zx, τ_zy and τ.
+pub fn solution_svg(problem: &Problem, parts: &[SolvedPart]) -> String {
+    struct Values {
+        tau_zx: Vec<f64>,
+        tau_zy: Vec<f64>,
+        tau: Vec<f64>,
+    }
+    let values = |solved: &SolvedPart| {
+        let stress = |node: usize| solved.solution.stress_at_node(NodeId::of(node));
+        let stresses: Vec<_> = (0..solved.part.mesh.cloud().n_nodes()).map(stress).collect();
+        Values {
+            tau_zx: stresses.iter().map(|s| s.zx).collect(),
+            tau_zy: stresses.iter().map(|s| s.zy).collect(),
+            tau: stresses.iter().map(|s| s.magnitude()).collect(),
+        }
+    };
+    let drawn: Vec<(Drawn, Values)> =
+        parts.iter().map(|s| (Drawn::of_mesh(&s.part.name, &s.part.mesh), values(s))).collect();
+    let figures: Vec<(Part, Fields)> = drawn
+        .iter()
+        .zip(parts)
+        .map(|((drawn, values), solved)| {
+            let Values { tau_zx, tau_zy, tau } = values;
+            (drawn.part(), Fields { f: &solved.solution.f, tau_zx, tau_zy, tau })
+        })
+        .collect();
+    solution_figure(&caption(problem), &figures)
+}

@@ -1,0 +1,7 @@
+//! Files that other tools open: one format a file.
+
+mod csv;
+mod vtu;
+
+pub use csv::{csv_of_clouds, csv_of_solutions};
+pub use vtu::{vtu_of_meshes, vtu_of_solutions};

@@ -1,0 +1,80 @@
+//! nodes.csv: one row a node.
+
+use crate::pipeline::SolvedPart;
+use nmt_cloud::Cloud;
+use nmt_geom::NodeId;
+use nmt_mfdm::Stress;
+use std::fmt::Write as _;
+
+/// `subdomain,node,x,y,kind,edges`, node from 0 in each subdomain, edges joined by `;`, 17 significant digits.
+pub fn csv_of_clouds<'a>(parts: impl IntoIterator<Item = (&'a str, &'a [String], &'a Cloud)>) -> String {
+    let mut out = String::from("subdomain,node,x,y,kind,edges\n");
+    for (name, edge_names, cloud) in parts {
+        let rows = Rows::new(name, edge_names, cloud);
+        for node in 0..cloud.n_nodes() {
+            rows.write(&mut out, NodeId::of(node));
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// The same with `F,tau_zx,tau_zy,tau`, τ from the node's own polynomial.
+pub fn csv_of_solutions(parts: &[SolvedPart]) -> String {
+    let mut out = String::from("subdomain,node,x,y,kind,edges,F,tau_zx,tau_zy,tau\n");
+    for SolvedPart { part, solution, .. } in parts {
+        let cloud = part.mesh.cloud();
+        let rows = Rows::new(&part.name, &part.edge_names, cloud);
+        for node in (0..cloud.n_nodes()).map(NodeId::of) {
+            rows.write(&mut out, node);
+            let stress: Stress = solution.stress_at_node(node);
+            for value in [solution.f[node.index()], stress.zx, stress.zy, stress.magnitude()] {
+                // Writing to a string cannot fail.
+                let _ = write!(out, ",{value:.16e}");
+            }
+            out.push('\n');
+        }
+    }
+    out
+}
+
+struct Rows<'a> {
+    name: String,
+    edge_names: Vec<String>,
+    cloud: &'a Cloud,
+}
+
+impl<'a> Rows<'a> {
+    fn new(name: &str, edge_names: &[String], cloud: &'a Cloud) -> Self {
+        Self { name: quoted(name), edge_names: edge_names.to_vec(), cloud }
+    }
+
+    fn write(&self, out: &mut String, node: NodeId) {
+        let [x, y] = self.cloud.xy()[node.index()];
+        let edges = match self.cloud.edges(node) {
+            Some(edges) if edges.first == edges.second => self.edge_names[edges.first.index()].clone(),
+            Some(edges) => {
+                format!("{};{}", self.edge_names[edges.first.index()], self.edge_names[edges.second.index()])
+            }
+            None => String::new(),
+        };
+        let kind = self.cloud.kind(node).name();
+        let _ = write!(out, "{},{},{x:.16e},{y:.16e},{kind},{}", self.name, node.0, quoted(&edges));
+    }
+}
+
+/// A field as RFC 4180 wants it.
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn fields_with_separators_are_quoted() {
+        assert_eq!(quoted("web"), "web");
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+    }
+}

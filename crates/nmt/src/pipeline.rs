@@ -1,0 +1,209 @@
+//! The stages in a row, one call each: the file to read first.
+//!
+//! problem file → clouds → meshes → solutions. Each function takes what the one before gave; [`solve_problem`] calls
+//! them all.
+
+use crate::error::NmtError;
+use crate::problem::{Problem, Subdomain};
+use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
+use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
+use nmt_tri::Mesh;
+
+/// A stage of the pipeline; an observer is told when one ends, so that whoever calls holds the clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Boundary and interior nodes.
+    Cloud,
+    /// Triangulation.
+    Mesh,
+    /// Stars and rows.
+    Stencils,
+    /// The linear system.
+    Assemble,
+    /// Its solution.
+    Solve,
+    /// Recovery and results.
+    Post,
+}
+
+/// Told the subdomain (by its number) and the stage that has just ended.
+pub type Observer<'a> = dyn FnMut(usize, Stage) + 'a;
+
+/// One subdomain with its cloud.
+#[derive(Clone, Debug)]
+pub struct CloudPart {
+    /// The subdomain's name.
+    pub name: String,
+    /// Name of every edge by [`nmt_geom::EdgeId`].
+    pub edge_names: Vec<String>,
+    /// Name of every hole.
+    pub hole_names: Vec<String>,
+    /// Its outlines.
+    pub section: Section,
+    /// Its nodes.
+    pub cloud: Cloud,
+}
+
+/// One subdomain with its mesh.
+#[derive(Clone, Debug)]
+pub struct MeshPart {
+    /// The subdomain's name.
+    pub name: String,
+    /// Name of every edge by [`nmt_geom::EdgeId`].
+    pub edge_names: Vec<String>,
+    /// Name of every hole.
+    pub hole_names: Vec<String>,
+    /// Its outlines.
+    pub section: Section,
+    /// Its triangles, and through them its cloud.
+    pub mesh: Mesh,
+}
+
+/// One subdomain solved.
+#[derive(Clone, Debug)]
+pub struct SolvedPart {
+    /// The subdomain with its mesh.
+    pub part: MeshPart,
+    /// The formulation used.
+    pub formulation: Formulation,
+    /// Order p of the equations.
+    pub order: usize,
+    /// The solution.
+    pub solution: TorsionSolution,
+}
+
+/// Clouds of all subdomains, in the order of the file.
+///
+/// # Errors
+/// Every subdomain's fault that shows only when nodes are placed, with its place in the file.
+pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPart>, NmtError> {
+    let mut parts = Vec::with_capacity(problem.subdomains.len());
+    let mut faults = Vec::new();
+    for (k, subdomain) in problem.subdomains.iter().enumerate() {
+        let section = Section {
+            contour: subdomain.contour.clone(),
+            holes: subdomain.holes.iter().map(|hole| hole.outline.clone()).collect(),
+        };
+        match generate(&section, &cloud_params(problem, subdomain)) {
+            Ok(cloud) => parts.push(CloudPart {
+                name: subdomain.name.clone(),
+                edge_names: section.edge_names(),
+                hole_names: subdomain.holes.iter().map(|hole| hole.name.clone()).collect(),
+                section,
+                cloud,
+            }),
+            Err(error) => faults.push(cloud_fault(problem, subdomain, error)),
+        }
+        observer(k, Stage::Cloud);
+    }
+    faults.extend(parts.iter().filter_map(|part| star_fault(problem, part)));
+    if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
+}
+
+fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
+    CloudParams {
+        nodes: subdomain.nodes,
+        hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
+        irregularity: subdomain.irregularity,
+        seed: problem.solve.seed,
+        edge_clearance: subdomain.edge_clearance,
+        node_clearance: subdomain.node_clearance,
+    }
+}
+
+/// A fault of the cloud in the terms of the file.
+fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> crate::problem::ProblemError {
+    let item = format!("subdomain \"{}\"", subdomain.name);
+    let at = |place, message: String, remedy: String| problem.source.error(place, &item, message, remedy);
+    match error {
+        CloudError::NoInterior { remedy } => {
+            at(&subdomain.nodes_place, "the cloud has no interior node".into(), remedy)
+        }
+        CloudError::BoundaryCrosses { at: p, remedy } => at(
+            &subdomain.nodes_place,
+            format!(
+                "the polygon through the boundary nodes crosses itself near ({:.6}, {:.6}): too few nodes for the curves",
+                p[0], p[1]
+            ),
+            remedy,
+        ),
+        CloudError::Edge { edge, source } => {
+            let places = subdomain.edge_places.iter().chain(subdomain.holes.iter().flat_map(|h| &h.edge_places));
+            let place = places.clone().nth(edge).unwrap_or(&subdomain.place);
+            at(place, source.to_string(), "correct this edge".into())
+        }
+        other => at(&subdomain.nodes_place, other.to_string(), "choose other densities".into()),
+    }
+}
+
+/// A star that the user chose larger than the cloud.
+fn star_fault(problem: &Problem, part: &CloudPart) -> Option<crate::problem::ProblemError> {
+    let (star, place) = (problem.solve.star?, problem.solve.star_place.as_ref()?);
+    let n_nodes = part.cloud.n_nodes();
+    (star > n_nodes).then(|| {
+        let message = format!("star = {star} is larger than the cloud of subdomain \"{}\", {n_nodes} nodes", part.name);
+        problem.source.error(place, "solve", message, format!("choose at most {n_nodes}, or more nodes"))
+    })
+}
+
+/// Meshes of all subdomains.
+///
+/// # Errors
+/// [`NmtError::Mesh`] where a cloud cannot be triangulated.
+pub fn meshes(clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<MeshPart>, NmtError> {
+    let mesh = |(k, part): (usize, CloudPart)| {
+        let CloudPart { name, edge_names, hole_names, section, cloud } = part;
+        let mesh = Mesh::constrained(cloud).map_err(|source| NmtError::Mesh { subdomain: name.clone(), source })?;
+        observer(k, Stage::Mesh);
+        Ok(MeshPart { name, edge_names, hole_names, section, mesh })
+    };
+    clouds.into_iter().enumerate().map(mesh).collect()
+}
+
+/// Solutions of all subdomains, each alone with F = 0 on its whole outline.
+///
+/// # Errors
+/// [`NmtError::Solve`] where the numerics fail.
+pub fn solutions(
+    problem: &Problem,
+    meshes: Vec<MeshPart>,
+    observer: &mut Observer,
+) -> Result<Vec<SolvedPart>, NmtError> {
+    let solve = |(k, part): (usize, MeshPart)| {
+        let subdomain = &problem.subdomains[k];
+        let formulation = subdomain.formulation.unwrap_or(problem.solve.formulation);
+        let torsion = TorsionProblem {
+            shear_modulus: subdomain.shear_modulus,
+            load: problem.solve.load,
+            holes: problem.solve.holes,
+        };
+        let params = SolveParams { formulation, star: problem.solve.star };
+        let mut ended = |stage: nmt_mfdm::Stage| observer(k, stage.into());
+        let solution = solve_observed(&torsion, &part.mesh, &params, &mut ended)
+            .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
+        Ok(SolvedPart { part, formulation, order: problem.solve.order, solution })
+    };
+    meshes.into_iter().enumerate().map(solve).collect()
+}
+
+impl From<nmt_mfdm::Stage> for Stage {
+    fn from(stage: nmt_mfdm::Stage) -> Self {
+        match stage {
+            nmt_mfdm::Stage::Stencils => Self::Stencils,
+            nmt_mfdm::Stage::Assemble => Self::Assemble,
+            nmt_mfdm::Stage::Solve => Self::Solve,
+            nmt_mfdm::Stage::Post => Self::Post,
+        }
+    }
+}
+
+/// From a checked problem to the solutions of its subdomains.
+///
+/// # Errors
+/// [`NmtError`] of the first stage that fails.
+pub fn solve_problem(problem: &Problem) -> Result<Vec<SolvedPart>, NmtError> {
+    let observer: &mut Observer = &mut |_, _| {};
+    let clouds = clouds(problem, observer)?;
+    let meshes = meshes(clouds, observer)?;
+    solutions(problem, meshes, observer)
+}

@@ -1,0 +1,118 @@
+//! The pictures of a problem: its nodes, its mesh and its solution, as SVG and, from the same SVG, as PNG.
+//!
+//! A figure is data before it is text: [`nodes_figure`], [`mesh_figure`] and [`solution_figure`] lay out a scene of paths
+//! and texts in page units (a page unit is a CSS pixel, 1000 of them are meant for 180 mm of paper) and write it as SVG.
+//! The input is plain slices, so this module knows no other crate. The same input gives the same bytes; coordinates or
+//! values that are NaN, infinite or beyond 1e290 are treated as absent.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `scene` | shapes on a page, pure data |
+//! | `text` | runs of text (italic, subscript, superscript) and their widths |
+//! | `svg`, `png` | scene → SVG text → PNG bytes |
+//! | `ticks` | rounded numbers and how they are written |
+//! | `axes` | data → page, frame, ticks and axis labels at equal scale |
+//! | `page` | title, legend and the page around one frame |
+//! | `topology` | edges and rim of a triangulation; edges as few long lines |
+//! | `contour`, `simplify` | boundary of {value ≥ level}, traced exactly, then thinned to what the eye sees |
+//! | `colour`, `scale` | colour maps; values → bands of colour, and the colour bar |
+//! | `nodes`, `mesh`, `solution` | the three figures |
+
+mod axes;
+mod colour;
+mod contour;
+mod mesh;
+mod nodes;
+mod page;
+#[cfg(feature = "png")]
+mod png;
+mod scale;
+mod scene;
+mod simplify;
+mod solution;
+mod svg;
+mod text;
+mod ticks;
+mod topology;
+
+#[cfg(feature = "png")]
+pub use png::{PlotError, png};
+
+/// Where a node of a cloud lies, hence how it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeMark {
+    /// At the end of an edge of the outline.
+    Vertex,
+    /// On an edge of the outline, between its ends.
+    Edge,
+    /// Inside the subdomain.
+    Interior,
+}
+
+/// One subdomain to draw. Node numbers count from 0 within the part; those out of range are skipped.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Name of the subdomain, for the legend.
+    pub name: &'a str,
+    /// Coordinates of the nodes, shape (n_nodes, 2), in the user's length unit.
+    pub xy: &'a [[f64; 2]],
+    /// Mark of each node, shape (n_nodes,); nodes beyond its end count as interior.
+    pub marks: &'a [NodeMark],
+    /// Closed loops of the real boundary by node number, main contour and holes; without them the rim of the mesh is drawn.
+    pub loops: &'a [Vec<u32>],
+    /// Triangles by node number, shape (n_triangles, 3), either orientation; empty for a bare cloud.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// The solution at the nodes of one part, each of shape (n_nodes,); nodes beyond the end of a slice have no value.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields<'a> {
+    /// Prandtl function `F`.
+    pub f: &'a [f64],
+    /// Shear stress `τ_zx = ∂F/∂y`.
+    pub tau_zx: &'a [f64],
+    /// Shear stress `τ_zy = −∂F/∂x`.
+    pub tau_zy: &'a [f64],
+    /// Magnitude of the shear stress; paper, eq. (16).
+    pub tau: &'a [f64],
+}
+
+/// What is written around a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Caption<'a> {
+    /// Title of the problem, above the picture; may be empty.
+    pub title: &'a str,
+    /// Length unit for the axis labels, as `m` in `x [m]`; may be empty.
+    pub units: &'a str,
+}
+
+/// SVG text of the nodes: a mark and a legend entry for each kind, a colour for each subdomain.
+pub fn nodes_figure(caption: &Caption<'_>, parts: &[Part<'_>]) -> String {
+    svg::render(&nodes::scene(caption, parts))
+}
+
+/// SVG text of the mesh: every edge drawn once, the outline on top, a colour for each subdomain.
+pub fn mesh_figure(caption: &Caption<'_>, parts: &[Part<'_>]) -> String {
+    svg::render(&mesh::scene(caption, parts))
+}
+
+/// SVG text of the solution: `F`, `τ_zx`, `τ_zy` and `τ` as filled contours of the linear interpolant on the mesh.
+///
+/// All parts share one colour scale a panel. Where a few peaks (as at re-entrant corners) lie far above all other values,
+/// the scale ends at the 99.5th percentile, its bar in an arrow, and the bar says how high the peaks are.
+pub fn solution_figure(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> String {
+    svg::render(&solution::scene(caption, parts))
+}
+
+/// Largest magnitude of a coordinate or value that is drawn.
+///
+/// Differences and products of a few of them with page sizes (1e3) must not overflow 1.8e308.
+const LARGEST_DRAWN: f64 = 1.0e290;
+
+/// Whether a coordinate or value can be drawn: neither NaN, infinite nor beyond [`LARGEST_DRAWN`].
+fn is_drawable(value: f64) -> bool {
+    value.abs() <= LARGEST_DRAWN
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,270 @@
+//! The picture of a solution: four panels of filled contours, each with its colour bar.
+
+use super::axes::{Axes, Extent, LEAST_FRAME, Margins, View};
+use super::colour::{Map, Rgb};
+use super::contour::{Loop, Surface};
+use super::page::{
+    MARGIN, OUTLINE, PAGE_WIDTH, TITLE_SIZE, description, note, outlines, page_points, page_width, title,
+};
+use super::scale::{POWER_GAP, Scale};
+use super::scene::{Anchor, Point, Polyline, Precision, Scene, Shape, Stroke};
+use super::simplify;
+use super::text::{Run, Style, width};
+use super::topology::Topology;
+use super::{Caption, Fields, Part, is_drawable};
+
+/// Contours are thinned by this many page units.
+const TOLERANCE: f64 = 0.1;
+/// Contour lines: seen, but behind the colours.
+const CONTOUR_STROKE: Stroke = Stroke { colour: Rgb::BLACK, width: 0.5, opacity: 0.45 };
+/// Size of panel titles.
+const PANEL_TITLE_SIZE: f64 = 15.0;
+/// From the top of a cell to the frame: the panel title stands there.
+const HEAD: f64 = 26.0;
+/// Between frame and colour bar.
+const BAR_GAP: f64 = 12.0;
+/// Between cells.
+const CELL_GAP: [f64; 2] = [28.0, 18.0];
+/// Width that labels and colour bar take besides a frame, for choosing the arrangement before they are known.
+const USUAL_SIDES: f64 = 140.0;
+/// Height that title and labels take besides a frame, likewise.
+const USUAL_ENDS: f64 = 75.0;
+/// Largest height of the page: with its width it is as an A4 page.
+const PAGE_HEIGHT: f64 = 1300.0;
+/// Two by two panels are kept unless another arrangement draws the section larger by this factor.
+const WORTH_REARRANGING: f64 = 1.2;
+/// A component of the stress smaller than this share of the stress is rounding, hence zero.
+const NOISE_REL: f64 = 1.0e-9;
+
+/// One of the four fields.
+struct Panel {
+    letter: char,
+    name: &'static str,
+    symbol: &'static str,
+    subscript: &'static str,
+    map: Map,
+    values: for<'a> fn(&Fields<'a>) -> &'a [f64],
+    id: &'static str,
+}
+
+const PANELS: [Panel; 4] = [
+    Panel {
+        letter: 'a',
+        name: "Prandtl function",
+        symbol: "F",
+        subscript: "",
+        map: Map::Sequential,
+        values: |fields| fields.f,
+        id: "F",
+    },
+    Panel {
+        letter: 'b',
+        name: "Shear stress",
+        symbol: "τ",
+        subscript: "zx",
+        map: Map::Diverging,
+        values: |fields| fields.tau_zx,
+        id: "tau-zx",
+    },
+    Panel {
+        letter: 'c',
+        name: "Shear stress",
+        symbol: "τ",
+        subscript: "zy",
+        map: Map::Diverging,
+        values: |fields| fields.tau_zy,
+        id: "tau-zy",
+    },
+    Panel {
+        letter: 'd',
+        name: "Resultant shear stress",
+        symbol: "τ",
+        subscript: "",
+        map: Map::Sequential,
+        values: |fields| fields.tau,
+        id: "tau",
+    },
+];
+
+impl Panel {
+    /// `(a) Prandtl function F`, without the words where there is no room for them.
+    fn title(&self, room: f64) -> Vec<Run> {
+        let build = |words: String| {
+            let mut runs = vec![Run::upright(words), Run::new(self.symbol, Style::Italic)];
+            if !self.subscript.is_empty() {
+                runs.push(Run::new(self.subscript, Style::Subscript));
+            }
+            runs
+        };
+        let long = build(format!("({}) {} ", self.letter, self.name));
+        if width(&long, PANEL_TITLE_SIZE) <= room { long } else { build(format!("({}) ", self.letter)) }
+    }
+}
+
+/// Columns and rows of panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Arrangement {
+    columns: usize,
+    rows: usize,
+}
+
+impl Arrangement {
+    /// Room for one frame.
+    fn room(self) -> [f64; 2] {
+        let share = |whole: f64, n: usize, gap: f64, beside: f64| (whole - gap * (n - 1) as f64) / n as f64 - beside;
+        let room = [
+            share(PAGE_WIDTH - 2.0 * MARGIN, self.columns, CELL_GAP[0], USUAL_SIDES),
+            share(PAGE_HEIGHT - 2.0 * MARGIN - 2.0 * TITLE_SIZE, self.rows, CELL_GAP[1], USUAL_ENDS),
+        ];
+        room.map(|r| r.max(LEAST_FRAME))
+    }
+
+    /// Two by two, or one column or one row where a slender section is drawn larger so.
+    fn best(extent: &Extent) -> Self {
+        let scale = |a: Self| View::fit(extent, a.room()).scale;
+        let square = Self { columns: 2, rows: 2 };
+        [Self { columns: 1, rows: 4 }, Self { columns: 4, rows: 1 }].into_iter().fold(square, |best, other| {
+            let factor = if best == square { WORTH_REARRANGING } else { 1.0 };
+            if scale(other) > factor * scale(best) { other } else { best }
+        })
+    }
+}
+
+/// The figure of the solution on all parts.
+pub(super) fn scene(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> Scene {
+    let extent = Extent::of(parts.iter().map(|(part, _)| part));
+    let arrangement = Arrangement::best(&extent);
+    let axes = Axes::new(View::fit(&extent, arrangement.room()), caption.units);
+    let Margins { left, right, top, bottom } = axes.margins();
+    let head = HEAD.max(top);
+    let [frame_width, frame_height] = axes.view.size;
+
+    let all_values = |panel: &Panel| parts.iter().flat_map(panel.values_of()).collect::<Vec<f64>>();
+    let stress = all_values(&PANELS[3]).into_iter().filter(|&v| is_drawable(v)).fold(0.0, |m: f64, v| m.max(v.abs()));
+    let scales: Vec<Option<Scale>> = PANELS
+        .iter()
+        .map(|panel| {
+            let noise = if panel.map == Map::Diverging { NOISE_REL * stress } else { 0.0 };
+            Scale::new(all_values(panel).into_iter(), panel.map, noise)
+        })
+        .collect();
+    let bars = scales.iter().flatten().map(|scale| scale.bar_width(frame_height)).fold(0.0, f64::max);
+    let cell = [left + frame_width + right.max(BAR_GAP + bars), head + frame_height + bottom];
+    let total = |k: usize, n: usize| cell[k] * n as f64 + CELL_GAP[k] * (n - 1) as f64;
+
+    let content = total(0, arrangement.columns);
+    let page_width = page_width(caption, content);
+    let (mut shapes, title_height) = title(caption, page_width);
+    let corner = [0.5 * (page_width - content), MARGIN + title_height];
+    for (number, (panel, scale)) in PANELS.iter().zip(&scales).enumerate() {
+        let (column, row) = (number % arrangement.columns, number / arrangement.columns);
+        let x = corner[0] + column as f64 * (cell[0] + CELL_GAP[0]) + left;
+        let y = corner[1] + row as f64 * (cell[1] + CELL_GAP[1]) + head;
+        shapes.push(draw_panel(panel, scale.as_ref(), parts, &axes, [x, y]));
+    }
+    let height = corner[1] + total(1, arrangement.rows) + MARGIN;
+    Scene { width: page_width, height: height.ceil(), description: description(caption, "solution"), shapes }
+}
+
+impl Panel {
+    fn values_of<'a, 'b>(&self) -> impl Fn(&'b (Part<'a>, Fields<'a>)) -> std::iter::Copied<std::slice::Iter<'a, f64>> {
+        let values = self.values;
+        move |(part, fields)| {
+            let of_field: &'a [f64] = values(fields);
+            of_field[..of_field.len().min(part.xy.len())].iter().copied()
+        }
+    }
+}
+
+fn draw_panel(
+    panel: &Panel,
+    scale: Option<&Scale>,
+    parts: &[(Part<'_>, Fields<'_>)],
+    axes: &Axes,
+    origin: Point,
+) -> Shape {
+    let [frame_width, frame_height] = axes.view.size;
+    let mut shapes = Vec::new();
+    let mut rims = Vec::new();
+    for (part, fields) in parts {
+        let points = page_points(part, &|p| axes.view.to_page(origin, p));
+        rims.extend(outlines(part, &points));
+        if let Some(scale) = scale {
+            shapes.extend(filled_contours(part, &points, (panel.values)(fields), scale));
+        }
+    }
+    shapes.push(Shape::lines(rims, OUTLINE));
+    match scale {
+        Some(scale) => shapes.push(scale.draw_bar([origin[0] + frame_width + BAR_GAP, origin[1]], frame_height)),
+        None => shapes.push(note(&axes.view, origin, "no values")),
+    }
+    shapes.push(axes.draw(origin));
+    let title_at = [origin[0] + 0.5 * frame_width, origin[1] - POWER_GAP];
+    shapes.push(Shape::text(title_at, PANEL_TITLE_SIZE, Anchor::Middle, panel.title(frame_width)));
+    Shape::Group { id: panel.id, shapes }
+}
+
+/// Bands of colour from the lowest, each painted over the one below, and the lines between them.
+fn filled_contours(part: &Part<'_>, points: &[Point], values: &[f64], scale: &Scale) -> Vec<Shape> {
+    let has_value = |node: usize| values.get(node).is_some_and(|&v| is_drawable(v));
+    let topology = Topology::new(points, part.triangles, has_value);
+    let surface = Surface::new(points, values, &topology);
+    let (mut shapes, mut contours) = (Vec::new(), Vec::new());
+    for band in scale.bands() {
+        let mut areas = Vec::new();
+        for ring in surface.at_least(band.from) {
+            let (area, lines) = thinned(&ring);
+            areas.extend(area);
+            contours.extend(lines);
+        }
+        shapes.push(Shape::area(areas, band.colour));
+    }
+    let stroke = Some(CONTOUR_STROKE);
+    shapes.push(Shape::Path { lines: contours, fill: None, stroke, precision: Precision::Hundredth });
+    shapes
+}
+
+/// A loop as the polygon to fill and the contour lines on it, both through the same points.
+fn thinned(ring: &Loop) -> (Option<Polyline>, Vec<Polyline>) {
+    let (mut area, mut lines) = (Vec::new(), Vec::new());
+    if let [piece] = ring.as_slice() {
+        area = simplify::closed(&piece.points[..piece.points.len() - 1], TOLERANCE);
+        if piece.on_level {
+            lines.push(Polyline::closed(area.clone()));
+        }
+    } else {
+        for piece in ring {
+            let line = simplify::open(&piece.points, TOLERANCE);
+            area.extend_from_slice(&line[1..]);
+            if piece.on_level {
+                lines.push(Polyline::open(line));
+            }
+        }
+    }
+    let is_area = area.len() > 2;
+    (is_area.then(|| Polyline::closed(area)), if is_area { lines } else { Vec::new() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slender_sections_are_stacked_along_their_length() {
+        let best = |w: f64, h: f64| {
+            let a = Arrangement::best(&Extent { min: [0.0; 2], max: [w, h] });
+            (a.columns, a.rows)
+        };
+        assert_eq!(best(1.0, 1.0), (2, 2));
+        assert_eq!(best(1e6, 0.7e6), (2, 2));
+        assert_eq!(best(20.0, 1.0), (1, 4));
+        assert_eq!(best(1.0, 20.0), (4, 1));
+    }
+
+    #[test]
+    fn a_panel_without_room_keeps_its_symbol() {
+        let text = |room: f64| PANELS[1].title(room).into_iter().map(|r| r.text).collect::<String>();
+        assert_eq!(text(300.0), "(b) Shear stress τzx");
+        assert_eq!(text(100.0), "(b) τzx");
+    }
+}

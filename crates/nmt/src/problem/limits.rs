@@ -1,0 +1,293 @@
+//! The range of every value, for the file and the options of the command alike.
+
+use super::suggest;
+use nmt_mfdm::{Formulation, HoleCondition};
+
+/// Lengths, moduli, twists and torques are at most this, whatever their unit.
+///
+/// Then no later stage can overflow: J is a length to the fourth (1e±120), the torque GθJ at most 1e180, and the square
+/// of a stress from a given torque at most 1e240 (f64 ends at 1e308).
+pub(super) const LARGEST: f64 = 1.0e30;
+
+/// And at least this, where they must not be 0.
+pub(super) const SMALLEST: f64 = 1.0e-30;
+
+/// Most grid points N_x·N_y of one cloud.
+const MOST_GRID_POINTS: f64 = 1.0e8;
+
+/// Memory of a solved problem a node, in bytes: 2 triangles, a star of 9 with its 6 rows of coefficients, the system
+/// and its preconditioner.
+const BYTES_PER_NODE: f64 = 1000.0;
+
+/// The orders of the MWLS polynomial that exist.
+const ORDERS: [usize; 1] = [2];
+
+/// Least and most spacings of clearance.
+///
+/// Nearer nodes make slivers whose stars cannot carry a polynomial; a clearance of more than a spacing leaves a strip
+/// along the boundary without nodes.
+const CLEARANCE: [f64; 2] = [0.01, 1.0];
+
+/// Why a value is refused, and what to give instead.
+#[derive(Debug, PartialEq)]
+pub(super) struct Refusal {
+    pub(super) message: String,
+    pub(super) remedy: String,
+}
+
+fn refuse<T>(message: impl Into<String>, remedy: impl Into<String>) -> Result<T, Refusal> {
+    Err(Refusal { message: message.into(), remedy: remedy.into() })
+}
+
+/// A number for a message: in the shortest digits that say it exactly, with an exponent where it is long.
+pub(super) fn show(value: f64) -> String {
+    if value == 0.0 || (1e-5..1e16).contains(&value.abs()) || !value.is_finite() {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// Six digits of it: enough to find a place, or to compare.
+pub(super) fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A number that later stages can take: finite and at most [`LARGEST`].
+pub(super) fn real(name: &str, value: f64) -> Result<f64, Refusal> {
+    if !value.is_finite() {
+        return refuse(format!("`{name}` is {}", show(value)), "give a finite number");
+    }
+    if value.abs() > LARGEST {
+        let message = format!("`{name}` is {}, beyond {LARGEST:e} in size", show(value));
+        return refuse(message, "choose a unit in which it is smaller");
+    }
+    Ok(value)
+}
+
+/// A radius, semi-axis or modulus.
+pub(super) fn positive(name: &str, value: f64) -> Result<f64, Refusal> {
+    real(name, value)?;
+    if value <= 0.0 {
+        return refuse(format!("`{name}` is {}", show(value)), "give a number greater than 0");
+    }
+    at_least_smallest(name, value)
+}
+
+fn at_least_smallest(name: &str, value: f64) -> Result<f64, Refusal> {
+    if value.abs() < SMALLEST {
+        let message = format!("`{name}` is {}, below {SMALLEST:e} in size", show(value));
+        return refuse(message, "choose a unit in which it is larger");
+    }
+    Ok(value)
+}
+
+/// The twist or the torque.
+pub(super) fn load(name: &str, value: f64) -> Result<f64, Refusal> {
+    real(name, value)?;
+    if value == 0.0 {
+        let message = format!("`{name}` is 0: nothing is twisted, and J = T/(Gθ) has no value");
+        return refuse(message, format!("give another {name}, or leave it out for twist = 1"));
+    }
+    at_least_smallest(name, value)
+}
+
+/// Amp of (10).
+pub(super) fn irregularity(value: f64) -> Result<f64, Refusal> {
+    if (0.0..0.5).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("`irregularity` is {}, outside [0, 0.5)", show(value));
+    refuse(message, "give 0 for a regular cloud, up to less than half a spacing, such as 0.25")
+}
+
+/// A clearance in spacings.
+pub(super) fn clearance(name: &str, value: f64) -> Result<f64, Refusal> {
+    let [least, most] = CLEARANCE;
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("`{name}` is {}, outside [{least}, {most}]", show(value));
+    refuse(message, "give it in spacings, or leave it out for the default")
+}
+
+/// N_x and N_y.
+pub(super) fn nodes([n_x, n_y]: [i128; 2]) -> Result<[usize; 2], Refusal> {
+    let few: Vec<_> = [("N_x", n_x), ("N_y", n_y)].into_iter().filter(|(_, n)| *n < 2).collect();
+    if !few.is_empty() {
+        let found: Vec<_> = few.iter().map(|(name, n)| format!("{name} = {n}")).collect();
+        return refuse(
+            format!("`nodes` has {}", found.join(" and ")),
+            "give at least 2 grid lines each way, for example nodes = [41, 21]",
+        );
+    }
+    let points = n_x as f64 * n_y as f64;
+    if points > MOST_GRID_POINTS {
+        let shrink = (MOST_GRID_POINTS / points).sqrt();
+        // Each side keeps at least 2 lines, and leaves 2 to the other.
+        let [most_x, most_y] = [n_x, n_y].map(|n| (n as f64 * shrink).floor().clamp(2.0, MOST_GRID_POINTS / 2.0));
+        return refuse(
+            format!(
+                "`nodes` asks for {} grid points, more than {MOST_GRID_POINTS:e}: solving them takes about {} of memory",
+                show(rounded(points)),
+                memory(points * BYTES_PER_NODE)
+            ),
+            format!("give fewer, at most nodes = [{}, {}] in this proportion", most_x, most_y),
+        );
+    }
+    Ok([n_x as usize, n_y as usize])
+}
+
+fn memory(bytes: f64) -> String {
+    if bytes < 1e12 { format!("{:.0} GB", bytes / 1e9) } else { format!("{:.3e} TB", bytes / 1e12) }
+}
+
+/// The own count of an edge, its ends included.
+pub(super) fn edge_nodes(n: i128) -> Result<usize, Refusal> {
+    if n < 2 {
+        return refuse(format!("`nodes` of the edge is {n}"), "give at least 2: both its ends count");
+    }
+    if n as f64 > MOST_GRID_POINTS {
+        return refuse(
+            format!("`nodes` of the edge is {n}, more than {MOST_GRID_POINTS:e}"),
+            "give fewer, or leave it out: then the edge follows the density of its contour",
+        );
+    }
+    Ok(n as usize)
+}
+
+/// p.
+pub(super) fn order(n: i128) -> Result<usize, Refusal> {
+    if let Some(&order) = ORDERS.iter().find(|&&order| order as i128 == n) {
+        return Ok(order);
+    }
+    refuse(format!("`order` is {n}, and only order 2 exists so far"), "give order = 2, or leave it out")
+}
+
+/// Nodes in a star of polynomials of order `order`, as far as the cloud need not be known.
+pub(super) fn star(n: i128, order: usize) -> Result<usize, Refusal> {
+    let monomials = (order + 1) * (order + 2) / 2;
+    if n < monomials as i128 {
+        let message = format!("`star` is {n}, fewer nodes than the {monomials} monomials of order {order}");
+        return refuse(message, format!("give at least {monomials}, or leave it out for the default"));
+    }
+    if n as f64 > MOST_GRID_POINTS {
+        return refuse(format!("`star` is {n}, larger than any cloud"), "leave it out for the default");
+    }
+    Ok(n as usize)
+}
+
+/// The seed of the randomisation.
+pub(super) fn seed(n: i128) -> Result<u64, Refusal> {
+    u64::try_from(n)
+        .or_else(|_| refuse(format!("`seed` is {n}"), format!("give a whole number from 0 to {}", i64::MAX)))
+}
+
+/// A formulation by its word.
+pub(super) fn formulation(word: &str) -> Result<Formulation, Refusal> {
+    choice("formulation", word, &Formulation::ALL.map(|f| (f.name(), f)))
+}
+
+/// A condition on holes by its word.
+pub(super) fn hole_condition(word: &str) -> Result<HoleCondition, Refusal> {
+    choice("condition on holes", word, &HoleCondition::ALL.map(|c| (c.name(), c)))
+}
+
+fn choice<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> Result<T, Refusal> {
+    if let Some((_, value)) = known.iter().find(|(name, _)| *name == word) {
+        return Ok(*value);
+    }
+    let names: Vec<_> = known.iter().map(|(name, _)| *name).collect();
+    let use_one = format!("use {}", suggest::list(&names, '"', "or"));
+    let remedy = match suggest::closest(word, &names) {
+        Some(meant) => format!("did you mean \"{meant}\"? ({use_one})"),
+        None => use_one,
+    };
+    refuse(format!("unknown {what} {}", quote(word)), remedy)
+}
+
+/// A text of the file for a message: in quotes, escaped, and cut where it is long.
+pub(super) fn quote(text: &str) -> String {
+    const LONGEST: usize = 40;
+    if text.chars().count() <= LONGEST {
+        return format!("{text:?}");
+    }
+    let start: String = text.chars().take(LONGEST).collect();
+    format!("{start:?}…")
+}
+
+/// A text that stands in reports, files and pictures.
+pub(super) fn label(name: &str, text: &str) -> Result<String, Refusal> {
+    // XML, which the pictures and the mesh files are, can hold neither even when escaped.
+    let unprintable = |c: &char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    match text.chars().find(unprintable) {
+        Some(found) => refuse(
+            format!("`{name}` holds the character {found:?}, which no label can hold"),
+            "write it on one line, without control characters",
+        ),
+        None => Ok(text.to_owned()),
+    }
+}
+
+/// The name of a subdomain, hole or edge.
+pub(super) fn name(text: &str) -> Result<String, Refusal> {
+    if text.trim().is_empty() {
+        return refuse(format!("`name` is {}", quote(text)), "give it a word, or leave it out for the default");
+    }
+    if text.contains(';') {
+        let message = format!("`name` is {}, and `;` separates the names of edges in nodes.csv", quote(text));
+        return refuse(message, "choose a name without `;`");
+    }
+    label("name", text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_that_is_too_large_is_told_its_memory_and_the_largest_of_its_proportion() {
+        let Refusal { message, remedy } = nodes([40_000, 10_000]).unwrap_err();
+        assert_eq!(
+            message,
+            "`nodes` asks for 400000000 grid points, more than 1e8: solving them takes about 400 GB of memory"
+        );
+        assert_eq!(remedy, "give fewer, at most nodes = [20000, 5000] in this proportion");
+        assert_eq!(nodes([10_000, 10_000]), Ok([10_000, 10_000]));
+        assert!(nodes([i128::MAX, i128::MAX]).is_err());
+    }
+
+    #[test]
+    fn the_largest_grid_of_a_proportion_is_itself_allowed() {
+        for n in [[i128::MAX, 2], [10_001, 10_000], [3, 1 << 40], [1 << 80, 1 << 79]] {
+            let Refusal { remedy, .. } = nodes(n).unwrap_err();
+            let inside = remedy.split(['[', ']']).nth(1).unwrap();
+            let offered: Vec<i128> = inside.split(", ").map(|n| n.parse().unwrap()).collect();
+            assert!(nodes([offered[0], offered[1]]).is_ok(), "{n:?}: {remedy}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_shown_exactly_and_short() {
+        assert_eq!(show(0.1), "0.1");
+        assert_eq!(show(-1.0), "-1");
+        assert_eq!(show(1e300), "1e300");
+        assert_eq!(show(f64::NEG_INFINITY), "-inf");
+    }
+
+    #[test]
+    fn every_range_refuses_what_is_not_a_number() {
+        for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e31, -1e31] {
+            assert!(real("x", value).is_err() && positive("x", value).is_err() && load("x", value).is_err());
+            assert!(irregularity(value).is_err() && clearance("x", value).is_err());
+        }
+        assert!(positive("x", 1e-31).is_err() && load("x", -1e-31).is_err());
+        assert!(load("x", -1.0).is_ok() && real("x", 1e-31).is_ok());
+    }
+
+    #[test]
+    fn long_texts_are_cut_in_messages() {
+        assert_eq!(quote("a\"b"), "\"a\\\"b\"");
+        assert!(quote(&"x".repeat(1_000_000)).len() < 60);
+    }
+}

@@ -1,0 +1,321 @@
+//! The tables of a problem file, key by key: kinds, ranges, names. How the shapes lie is not looked at here.
+
+use super::error::{Faults, Place};
+use super::limits::{self, Refusal, quote};
+use super::schema::{Overrides, SolveSettings};
+use super::shape::{self, Shape};
+use super::tree::{HOLE_KEYS, Reader, SOLVE_KEYS, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
+use nmt_mfdm::Formulation;
+use nmt_mfdm::Load;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// A problem as far as it could be read; complete where no fault was noted.
+#[derive(Debug)]
+pub(super) struct Draft {
+    pub(super) title: String,
+    pub(super) units: String,
+    pub(super) subdomains: Vec<SubdomainDraft>,
+    pub(super) solve: SolveSettings,
+}
+
+/// A subdomain as far as it could be read.
+#[derive(Debug)]
+pub(super) struct SubdomainDraft {
+    pub(super) name: String,
+    /// `subdomain "arch"`.
+    pub(super) item: String,
+    pub(super) nodes: Option<[usize; 2]>,
+    pub(super) irregularity: f64,
+    pub(super) shear_modulus: f64,
+    pub(super) formulation: Option<Formulation>,
+    pub(super) edge_clearance: f64,
+    pub(super) node_clearance: f64,
+    pub(super) contour: Option<Shape>,
+    pub(super) holes: Vec<HoleDraft>,
+    pub(super) place: Range<usize>,
+    pub(super) nodes_place: Place,
+}
+
+/// A hole as far as it could be read.
+#[derive(Debug)]
+pub(super) struct HoleDraft {
+    pub(super) name: String,
+    /// `subdomain "arch", hole "bore"`.
+    pub(super) item: String,
+    pub(super) nodes: Option<[usize; 2]>,
+    pub(super) shape: Option<Shape>,
+    pub(super) place: Range<usize>,
+}
+
+/// Reads the whole tree, and the options of the command over it.
+pub(super) fn read(tree: &DeTable<'_>, options: &Overrides, reader: &mut Reader<'_>) -> Draft {
+    let top = Table { entries: tree, place: 0..0, item: String::new() };
+    reader.known_keys(&top, "the top of the file", TOP_KEYS);
+    let [title, units] = [("title", "\"A bracket\""), ("units", "\"mm\"")].map(|(key, example)| {
+        let value = top.get(key);
+        value.and_then(|v| reader.text("", key, v, example, |text| limits::label(key, text))).unwrap_or_default()
+    });
+    let mut solve = solve(reader, &top);
+    apply(options, &mut solve, &mut reader.faults);
+    let mut subdomains = subdomains(reader, &top, options);
+    if let Some(chosen) = options.nodes {
+        let place = Place::Option(format!("--nodes {},{}", chosen[0], chosen[1]));
+        // Nothing the command line can hold is larger than an i128.
+        let nodes = option(&mut reader.faults, &place, limits::nodes(chosen.map(|n| n as i128)));
+        for subdomain in &mut subdomains {
+            (subdomain.nodes, subdomain.nodes_place) = (nodes, place.clone());
+        }
+    }
+    if options.formulation.is_some() {
+        subdomains.iter_mut().for_each(|subdomain| subdomain.formulation = None);
+    }
+    Draft { title, units, subdomains, solve }
+}
+
+fn subdomains(reader: &mut Reader<'_>, top: &Table<'_, '_>, options: &Overrides) -> Vec<SubdomainDraft> {
+    let tables = tables(reader, top, "subdomain", "[[subdomain]]");
+    if tables.is_empty() && top.get("subdomain").is_none_or(|value| value.get_ref().is_array()) {
+        let remedy = "add a [[subdomain]] with `nodes` and a shape such as `outline` or `circle`";
+        reader.faults.push(top.key_place("subdomain"), "", "the problem has no subdomain", remedy);
+    }
+    let subdomains: Vec<_> =
+        tables.into_iter().enumerate().map(|(k, table)| subdomain(reader, table, k + 1, options)).collect();
+    distinct(
+        reader,
+        subdomains.iter().map(|(subdomain, name_place)| Named {
+            name: &subdomain.name,
+            place: name_place.clone(),
+            item: subdomain.item.clone(),
+            other: "subdomain",
+        }),
+    );
+    subdomains.into_iter().map(|(subdomain, _)| subdomain).collect()
+}
+
+/// The tables of an array of tables. A single table in its place is noted, and read as the one it holds.
+fn tables<'t, 'i>(reader: &mut Reader<'_>, table: &Table<'t, 'i>, key: &str, header: &str) -> Vec<Table<'t, 'i>> {
+    let Some(value) = table.get(key) else { return Vec::new() };
+    let item = table.item.as_str();
+    let remedy = format!("write {header} on a line of its own, with its keys below");
+    match value.get_ref() {
+        DeValue::Array(values) => {
+            let mut read = |value: &'t Value<'i>| match value.get_ref() {
+                DeValue::Table(entries) => Some(Table { entries, place: value.span(), item: item.to_owned() }),
+                _ => reader.wrong_kind_with(item, key, "an array of tables", value, &remedy),
+            };
+            values.iter().filter_map(&mut read).collect()
+        }
+        DeValue::Table(entries) => {
+            let message = format!("`{key}` is a single table");
+            reader.faults.push(value.span(), item, message, format!("write {header}, with double brackets"));
+            vec![Table { entries, place: value.span(), item: item.to_owned() }]
+        }
+        _ => {
+            reader.wrong_kind_with::<()>(item, key, "an array of tables", value, &remedy);
+            Vec::new()
+        }
+    }
+}
+
+/// The name of a table, or `default`, and where it stands.
+fn name(reader: &mut Reader<'_>, table: &Table<'_, '_>, default: String, item: &str) -> (String, Range<usize>) {
+    let Some(value) = table.get("name") else { return (default, table.place.clone()) };
+    let item = format!("{item} {}", quote(&default));
+    let name = reader.text(&item, "name", value, "\"arch\"", limits::name);
+    (name.unwrap_or(default), value.span())
+}
+
+/// A subdomain, and the place of its name.
+fn subdomain(
+    reader: &mut Reader<'_>,
+    mut table: Table<'_, '_>,
+    number: usize,
+    options: &Overrides,
+) -> (SubdomainDraft, Range<usize>) {
+    let (name, name_place) = name(reader, &table, format!("s{number}"), "subdomain");
+    table.item = format!("subdomain {}", quote(&name));
+    let item = table.item.clone();
+    reader.known_keys(&table, "[[subdomain]]", SUBDOMAIN_KEYS);
+    let nodes = match (table.get("nodes"), options.nodes) {
+        (None, Some(_)) => None,
+        _ => reader.required(&table, "nodes", "[41, 21]"),
+    };
+    let nodes_place = nodes.map_or(table.place.clone(), |value| value.span()).into();
+    let nodes = nodes.and_then(|value| reader.nodes(&item, value));
+    let mut number = |key: &str, default: f64, example: &str, check: fn(&str, f64) -> Result<f64, Refusal>| {
+        let value = table.get(key);
+        value.and_then(|value| reader.number(&item, key, value, example, check)).unwrap_or(default)
+    };
+    let irregularity = number("irregularity", 0.0, "0.25", |_, value| limits::irregularity(value));
+    let shear_modulus = number("shear_modulus", 1.0, "1.0", limits::positive);
+    let edge_clearance = number("edge_clearance", 1.0 / 3.0, "0.3333", limits::clearance);
+    let node_clearance = number("node_clearance", 0.5, "0.5", limits::clearance);
+    let formulation = table.get("formulation");
+    let formulation =
+        formulation.and_then(|value| reader.text(&item, "formulation", value, "\"variational\"", limits::formulation));
+    let contour = shape::read(reader, &table, "");
+    let tables = tables(reader, &table, "hole", "[[subdomain.hole]]");
+    let holes: Vec<_> = tables.into_iter().enumerate().map(|(k, table)| hole(reader, table, k + 1)).collect();
+    distinct(
+        reader,
+        holes.iter().map(|(hole, name_place)| Named {
+            name: &hole.name,
+            place: name_place.clone(),
+            item: hole.item.clone(),
+            other: "hole",
+        }),
+    );
+    let holes: Vec<_> = holes.into_iter().map(|(hole, _)| hole).collect();
+    // A hole whose name is taken has been told so; its edges bear the same name.
+    let mut names = HashSet::new();
+    let named = holes.iter().filter(|hole| names.insert(hole.name.as_str())).filter_map(|hole| hole.shape.as_ref());
+    distinct_edges(reader, contour.iter().chain(named));
+    let subdomain = SubdomainDraft {
+        name,
+        item,
+        nodes,
+        irregularity,
+        shear_modulus,
+        formulation,
+        edge_clearance,
+        node_clearance,
+        contour,
+        holes,
+        place: table.place,
+        nodes_place,
+    };
+    (subdomain, name_place)
+}
+
+/// A hole, and the place of its name.
+fn hole(reader: &mut Reader<'_>, mut table: Table<'_, '_>, number: usize) -> (HoleDraft, Range<usize>) {
+    let of = table.item.clone();
+    let (name, name_place) = name(reader, &table, format!("h{number}"), &format!("{of}, hole"));
+    table.item = format!("{of}, hole {}", quote(&name));
+    reader.known_keys(&table, "[[subdomain.hole]]", HOLE_KEYS);
+    let nodes = table.get("nodes").and_then(|value| reader.nodes(&table.item, value));
+    let shape = shape::read(reader, &table, &format!("{name}/"));
+    (HoleDraft { name, item: table.item, nodes, shape, place: table.place }, name_place)
+}
+
+/// Something with a name, for the check that no two have the same.
+struct Named<'n> {
+    name: &'n str,
+    place: Range<usize>,
+    item: String,
+    other: &'static str,
+}
+
+fn distinct<'n>(reader: &mut Reader<'_>, all: impl Iterator<Item = Named<'n>>) {
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for (k, Named { name, place, item, other }) in all.enumerate() {
+        if let Some(first) = seen.get(name) {
+            let message = format!("{other} {first} has the name {} already", quote(name));
+            reader.faults.push(place, item, message, format!("give each {other} a name of its own"));
+        } else {
+            seen.insert(name, k + 1);
+        }
+    }
+}
+
+/// Edge names are unique within a subdomain, those of its holes included.
+fn distinct_edges<'s>(reader: &mut Reader<'_>, shapes: impl Iterator<Item = &'s Shape>) {
+    let mut seen: HashMap<&str, String> = HashMap::new();
+    for shape in shapes {
+        for (edge, mark) in shape.outline.edges.iter().zip(&shape.edges) {
+            let item = shape.item_of(mark);
+            if let Some(first) = seen.get(edge.name.as_str()) {
+                let message = format!("the name {} is that of another edge already ({first})", quote(&edge.name));
+                let place = mark.name_place.clone().unwrap_or(mark.place.clone());
+                reader.faults.push(place, item, message, "give each edge of a subdomain a name of its own");
+            } else {
+                seen.insert(&edge.name, item);
+            }
+        }
+    }
+}
+
+/// `[solve]` of the file.
+fn solve(reader: &mut Reader<'_>, top: &Table<'_, '_>) -> SolveSettings {
+    let mut settings = SolveSettings::default();
+    let Some(value) = top.get("solve") else { return settings };
+    let item = "[solve]";
+    let DeValue::Table(entries) = value.get_ref() else {
+        let remedy = "write [solve] on a line of its own, with its keys below";
+        reader.wrong_kind_with::<()>("", "solve", "a table", value, remedy);
+        return settings;
+    };
+    let table = Table { entries, place: value.span(), item: item.to_owned() };
+    reader.known_keys(&table, item, SOLVE_KEYS);
+    let formulation = table.get("formulation");
+    let formulation =
+        formulation.and_then(|v| reader.text(item, "formulation", v, "\"variational\"", limits::formulation));
+    settings.formulation = formulation.unwrap_or_default();
+    let holes = table.get("holes");
+    let holes = holes.and_then(|v| reader.text(item, "holes", v, "\"circulation\"", limits::hole_condition));
+    settings.holes = holes.unwrap_or_default();
+    let [twist, torque] = ["twist", "torque"].map(|key| {
+        let value = table.get(key)?;
+        reader.number(item, key, value, "1.0", limits::load)
+    });
+    if table.get("twist").is_some() && table.get("torque").is_some() {
+        let place = table.key_place("twist").start.max(table.key_place("torque").start);
+        let place = if place == table.key_place("twist").start { "twist" } else { "torque" };
+        let message = "both `twist` and `torque` are given, and each determines the other";
+        reader.faults.push(table.key_place(place), item, message, "keep one of them");
+    }
+    settings.load = twist.map(Load::Twist).or(torque.map(Load::Torque)).unwrap_or(settings.load);
+    if let Some(order) = table.get("order").and_then(|v| reader.whole(item, "order", v, "2", limits::order)) {
+        settings.order = order;
+    }
+    if let Some(value) = table.get("star") {
+        settings.star = reader.whole(item, "star", value, "9", |n| limits::star(n, settings.order));
+        settings.star_place = Some(value.span().into());
+    }
+    if let Some(seed) = table.get("seed").and_then(|v| reader.whole(item, "seed", v, "1", limits::seed)) {
+        settings.seed = seed;
+    }
+    settings
+}
+
+/// Puts the options of the command over the settings of the file.
+fn apply(options: &Overrides, settings: &mut SolveSettings, faults: &mut Faults) {
+    let place = |name: &str, value: &dyn std::fmt::Display| Place::Option(format!("--{name} {value}"));
+    if let Some(word) = &options.formulation {
+        let chosen = option(faults, &place("formulation", word), limits::formulation(word));
+        settings.formulation = chosen.unwrap_or_default();
+    }
+    if let Some(word) = &options.holes {
+        settings.holes = option(faults, &place("holes", word), limits::hole_condition(word)).unwrap_or_default();
+    }
+    if let (Some(twist), Some(torque)) = (options.twist, options.torque) {
+        let place = Place::Option(format!("--twist {twist} --torque {torque}"));
+        faults.push(place, "", "both are given, and each determines the other", "keep one of them");
+    }
+    let twist = options.twist.map(|value| (value, "twist", Load::Twist as fn(f64) -> Load));
+    let torque = options.torque.map(|value| (value, "torque", Load::Torque as fn(f64) -> Load));
+    for (value, name, load) in twist.into_iter().chain(torque) {
+        if let Some(value) = option(faults, &place(name, &limits::show(value)), limits::load(name, value)) {
+            settings.load = load(value);
+        }
+    }
+    if let Some(order) = options.order {
+        let chosen = option(faults, &place("order", &order), limits::order(order.into()));
+        settings.order = chosen.unwrap_or(settings.order);
+    }
+    if let Some(star) = options.star {
+        let place = place("star", &star);
+        settings.star = option(faults, &place, limits::star(star.into(), settings.order));
+        settings.star_place = Some(place);
+    }
+    if let Some(seed) = options.seed {
+        settings.seed = seed;
+    }
+}
+
+/// The value of an option, its refusal noted.
+fn option<T>(faults: &mut Faults, place: &Place, checked: Result<T, Refusal>) -> Option<T> {
+    checked.map_err(|Refusal { message, remedy }| faults.push(place.clone(), "", message, remedy)).ok()
+}

@@ -1,0 +1,122 @@
+//! The problem as the pipeline takes it: read, typed, within its limits.
+
+use super::error::{Place, Source};
+use nmt_curve::Outline;
+use nmt_mfdm::{Formulation, HoleCondition, Load};
+
+/// A sound problem: every value within its limits, every outline closed, simple and in its place.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Title, empty by default.
+    pub title: String,
+    /// Name of the length unit, printed beside results; empty by default.
+    pub units: String,
+    /// The subdomains in the order of the file, at least one.
+    pub subdomains: Vec<Subdomain>,
+    /// How it is solved.
+    pub solve: SolveSettings,
+    /// The file, for the place of a fault that is found later.
+    pub source: Source,
+}
+
+/// A main contour with its holes.
+#[derive(Clone, Debug)]
+pub struct Subdomain {
+    /// Name, unique in the problem; `s1`, `s2` … by default.
+    pub name: String,
+    /// N_x, N_y: grid lines across the contour's envelope, each at least 2.
+    pub nodes: [usize; 2],
+    /// Amp of (10): the largest displacement of a node in spacings, in [0, 0.5); 0, the default, is a regular cloud.
+    pub irregularity: f64,
+    /// G, positive; 1 by default.
+    pub shear_modulus: f64,
+    /// Its own formulation, where it differs from that of [`SolveSettings`].
+    pub formulation: Option<Formulation>,
+    /// Least distance of an interior node from a boundary segment, in spacings \[D6\]; ⅓ by default.
+    pub edge_clearance: f64,
+    /// Least distance of an interior node from a boundary node, in spacings \[D7\]; ½ by default.
+    pub node_clearance: f64,
+    /// The main contour, either orientation.
+    pub contour: Outline,
+    /// The holes in the order of the file.
+    pub holes: Vec<Hole>,
+    /// Its `[[subdomain]]`.
+    pub place: Place,
+    /// Its `nodes`, or `--nodes`.
+    pub nodes_place: Place,
+    /// The key that gives its contour.
+    pub contour_place: Place,
+    /// Each edge of its contour, in order.
+    pub edge_places: Vec<Place>,
+}
+
+/// A hole of a subdomain.
+#[derive(Clone, Debug)]
+pub struct Hole {
+    /// Name, unique in the subdomain; `h1`, `h2` … by default.
+    pub name: String,
+    /// N_x, N_y over the hole's own envelope; by default the densities of the contour.
+    pub nodes: Option<[usize; 2]>,
+    /// The boundary of the hole, either orientation; its edges are named `HOLE/e1` … by default.
+    pub outline: Outline,
+    /// Its `[[subdomain.hole]]`.
+    pub place: Place,
+    /// Each edge of its outline, in order.
+    pub edge_places: Vec<Place>,
+}
+
+/// `[solve]`, options of the command included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveSettings {
+    /// The formulation of every subdomain without its own.
+    pub formulation: Formulation,
+    /// Twist or torque.
+    pub load: Load,
+    /// The condition on holes \[D12\].
+    pub holes: HoleCondition,
+    /// p, the order of the MWLS polynomial.
+    pub order: usize,
+    /// Nodes in a star, the centre included; by default the order's own.
+    ///
+    /// At least the number of monomials; that it is no larger than the cloud is known only when there is one.
+    pub star: Option<usize>,
+    /// Seed of the randomisation.
+    pub seed: u64,
+    /// Where `star` is given.
+    pub star_place: Option<Place>,
+}
+
+impl Default for SolveSettings {
+    fn default() -> Self {
+        Self {
+            formulation: Formulation::default(),
+            load: Load::Twist(1.0),
+            holes: HoleCondition::default(),
+            order: 2,
+            star: None,
+            seed: nmt_cloud::DEFAULT_SEED,
+            star_place: None,
+        }
+    }
+}
+
+/// Options of the command: each replaces its key of the file and obeys the same limits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// `--nodes Nx,Ny`: the grid lines of every subdomain.
+    pub nodes: Option<[usize; 2]>,
+    /// `--formulation`: of every subdomain, those with a formulation of their own included.
+    pub formulation: Option<String>,
+    /// `--twist`; replaces a torque of the file too.
+    pub twist: Option<f64>,
+    /// `--torque`; replaces a twist of the file too.
+    pub torque: Option<f64>,
+    /// `--holes`.
+    pub holes: Option<String>,
+    /// `--order`.
+    pub order: Option<i64>,
+    /// `--star`.
+    pub star: Option<i64>,
+    /// `--seed`.
+    pub seed: Option<u64>,
+}

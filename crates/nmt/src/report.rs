@@ -1,0 +1,15 @@
+//! One report model, rendered as JSON or text.
+
+mod model;
+mod singular;
+mod text;
+mod thickness;
+mod warnings;
+
+pub use model::{
+    CensusReport, HoleReport, PointReport, QualityReport, Report, Seconds, SolutionReport, StarsReport,
+    SubdomainReport, Totals,
+};
+pub use singular::singular_vertices;
+pub use text::text;
+pub use thickness::{ThinSpot, thinnest};

@@ -1,0 +1,364 @@
+//! The report as data; the field names are those of report.json.
+
+use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
+use crate::problem::Problem;
+use crate::report::singular::singular_vertices;
+use crate::report::warnings;
+use nmt_cloud::{Census, Cloud};
+use nmt_geom::Point;
+use nmt_geom::tol::SAME_POINT_REL;
+use nmt_mfdm::{StarReport, Stress};
+use nmt_tri::{Mesh, TriangleIndex, quality};
+use serde::Serialize;
+
+/// Everything a run has to say; [`Report::json`] writes it as report.json.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Version of nmt.
+    pub nmt: String,
+    /// Title of the problem.
+    pub title: String,
+    /// Name of the length unit.
+    pub units: String,
+    /// One entry a subdomain, in the order of the file.
+    pub subdomains: Vec<SubdomainReport>,
+    /// One entry a point asked for, in order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<Vec<PointReport>>,
+    /// Of all subdomains together.
+    pub totals: Totals,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// One subdomain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SubdomainReport {
+    /// Name.
+    pub name: String,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// How many of them lie on the boundary.
+    pub boundary_nodes: usize,
+    /// Number of triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<usize>,
+    /// Area of the polygon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+    /// Centroid of the polygon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centroid: Option<Point>,
+    /// h_x and h_y.
+    pub spacing: [f64; 2],
+    /// Grid points by fate.
+    pub census: CensusReport,
+    /// Shape of the triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<QualityReport>,
+    /// The solution.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub solution: Option<SolutionReport>,
+    /// Seconds by stage, filled in by whoever holds the clock.
+    pub seconds: Seconds,
+}
+
+/// Grid points by fate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CensusReport {
+    /// Generated.
+    pub grid: usize,
+    /// Outside the contour.
+    pub outside: usize,
+    /// In a hole.
+    pub in_hole: usize,
+    /// Too near to a segment.
+    pub near_edge: usize,
+    /// Too near to a boundary node.
+    pub near_node: usize,
+    /// Interior nodes.
+    pub kept: usize,
+}
+
+/// Shape of the triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct QualityReport {
+    /// Smallest 4√3·A/Σl².
+    pub min: f64,
+    /// Its mean.
+    pub mean: f64,
+    /// Smallest angle, degrees.
+    pub min_angle_deg: f64,
+}
+
+/// The solution of one subdomain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SolutionReport {
+    /// Formulation.
+    pub formulation: &'static str,
+    /// Order p of the equations.
+    pub order: usize,
+    /// One entry a hole.
+    pub holes: Vec<HoleReport>,
+    /// Interior nodes + holes under circulation.
+    pub unknowns: usize,
+    /// Torsion constant T/(Gθ).
+    #[serde(rename = "J")]
+    pub j: f64,
+    /// T.
+    pub torque: f64,
+    /// θ.
+    pub twist: f64,
+    /// T/τ_max.
+    #[serde(rename = "W_t")]
+    pub w_t: f64,
+    /// Largest F.
+    #[serde(rename = "F_max")]
+    pub f_max: f64,
+    /// Where.
+    #[serde(rename = "F_max_at")]
+    pub f_max_at: Point,
+    /// Largest τ at nodes.
+    pub tau_max: f64,
+    /// Where.
+    pub tau_max_at: Point,
+    /// Vertices where the exact τ is infinite.
+    pub tau_singular_at: Vec<Point>,
+    /// ‖b − Ax‖/‖b‖.
+    pub linear_residual: f64,
+    /// What became of the stars.
+    pub stars: StarsReport,
+}
+
+/// One hole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HoleReport {
+    /// Name.
+    pub name: String,
+    /// Condition.
+    pub condition: &'static str,
+    /// F on it.
+    #[serde(rename = "F")]
+    pub f: f64,
+    /// Area of the polygon through its nodes.
+    pub area: f64,
+}
+
+/// What became of the stars of the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StarsReport {
+    /// Nodes in a star.
+    pub size: usize,
+    /// Hidden nodes passed over.
+    pub hidden_nodes_skipped: usize,
+    /// Stars enlarged.
+    pub enlarged: usize,
+    /// Stars of lower order.
+    pub order_lowered: usize,
+    /// Largest condition number.
+    pub worst_condition: f64,
+}
+
+/// Seconds by stage; 0 where nobody held a clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Boundary and interior nodes.
+    pub cloud: f64,
+    /// Triangulation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<f64>,
+    /// Stars and rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stencils: Option<f64>,
+    /// The linear system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assemble: Option<f64>,
+    /// Its solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solve: Option<f64>,
+    /// Recovery and results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub post: Option<f64>,
+}
+
+/// A point asked for; `null` outside.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PointReport {
+    /// The point.
+    pub at: Point,
+    /// The subdomain that holds it: the first of the file.
+    pub subdomain: Option<String>,
+    /// F.
+    #[serde(rename = "F")]
+    pub f: Option<f64>,
+    /// ∂F/∂y.
+    pub tau_zx: Option<f64>,
+    /// −∂F/∂x.
+    pub tau_zy: Option<f64>,
+    /// Their magnitude.
+    pub tau: Option<f64>,
+}
+
+/// Of all subdomains together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Totals {
+    /// Nodes.
+    pub nodes: usize,
+    /// Seconds, filled in by whoever holds the clock.
+    pub seconds: f64,
+    /// Peak memory in 10⁶ bytes, filled in likewise; `null` where the system does not tell.
+    pub peak_rss_mb: Option<f64>,
+}
+
+impl Report {
+    /// The report of clouds.
+    pub fn of_clouds(problem: &Problem, parts: &[CloudPart]) -> Self {
+        let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.cloud)).collect();
+        let mut report = Self::new(problem, subdomains);
+        parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, &part.cloud)));
+        report
+    }
+
+    /// The report of meshes.
+    pub fn of_meshes(problem: &Problem, parts: &[MeshPart]) -> Self {
+        let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
+        parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, part.mesh.cloud())));
+        report
+    }
+
+    /// The report of solutions, with the values at `points`.
+    pub fn of_solutions(problem: &Problem, parts: &[SolvedPart], points: &[Point]) -> Self {
+        let mut report = Self::new(problem, parts.iter().map(solved_report).collect());
+        let points = points_report(parts, points);
+        if parts.len() > 1 {
+            report.warnings.push(warnings::several_subdomains(parts.len()));
+        }
+        for part in parts {
+            report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
+            report.warnings.extend(warnings::of_solution(part));
+        }
+        report.warnings.extend(points.iter().filter_map(warnings::of_point));
+        report.points = Some(points);
+        report
+    }
+
+    fn new(problem: &Problem, subdomains: Vec<SubdomainReport>) -> Self {
+        let nodes = subdomains.iter().map(|s| s.nodes).sum();
+        Self {
+            nmt: env!("CARGO_PKG_VERSION").into(),
+            title: problem.title.clone(),
+            units: problem.units.clone(),
+            subdomains,
+            points: None,
+            totals: Totals { nodes, ..Totals::default() },
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The report as JSON text, ending with a line break.
+    ///
+    /// # Errors
+    /// Where a number is not finite, which no solution's is.
+    pub fn json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self).map(|text| text + "\n")
+    }
+}
+
+fn cloud_report(name: &str, cloud: &Cloud) -> SubdomainReport {
+    let Census { grid, outside, in_hole, near_edge, near_node, kept } = cloud.census();
+    SubdomainReport {
+        name: name.into(),
+        nodes: cloud.n_nodes(),
+        boundary_nodes: cloud.n_boundary(),
+        triangles: None,
+        area: None,
+        centroid: None,
+        spacing: cloud.spacing(),
+        census: CensusReport { grid, outside, in_hole, near_edge, near_node, kept },
+        quality: None,
+        solution: None,
+        seconds: Seconds::default(),
+    }
+}
+
+fn mesh_report(part: &MeshPart) -> SubdomainReport {
+    let mesh = &part.mesh;
+    let of_quality = |q: nmt_tri::Quality| QualityReport { min: q.min, mean: q.mean, min_angle_deg: q.min_angle_deg };
+    SubdomainReport {
+        triangles: Some(mesh.n_triangles()),
+        area: Some(mesh.total_area()),
+        centroid: Some(mesh.centroid()),
+        quality: quality(mesh).map(of_quality),
+        seconds: Seconds { mesh: Some(0.0), ..Seconds::default() },
+        ..cloud_report(&part.name, mesh.cloud())
+    }
+}
+
+fn solved_report(solved: &SolvedPart) -> SubdomainReport {
+    let SolvedPart { part, formulation, order, solution } = solved;
+    let hole = |(name, hole): (&String, &nmt_mfdm::HoleResult)| HoleReport {
+        name: name.clone(),
+        condition: hole.condition.name(),
+        f: hole.f,
+        area: hole.area,
+    };
+    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition } = solution.stars;
+    let solution = SolutionReport {
+        formulation: formulation.name(),
+        order: *order,
+        holes: part.hole_names.iter().zip(&solution.holes).map(hole).collect(),
+        unknowns: solution.unknowns,
+        j: solution.j,
+        torque: solution.torque,
+        twist: solution.twist,
+        w_t: solution.w_t,
+        f_max: solution.f_max.value,
+        f_max_at: solution.f_max.at,
+        tau_max: solution.tau_max.value,
+        tau_max_at: solution.tau_max.at,
+        tau_singular_at: singular_vertices(&part.section),
+        linear_residual: solution.linear_residual,
+        stars: StarsReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition },
+    };
+    let zero = Some(0.0);
+    SubdomainReport {
+        solution: Some(solution),
+        seconds: Seconds { cloud: 0.0, mesh: zero, stencils: zero, assemble: zero, solve: zero, post: zero },
+        ..mesh_report(part)
+    }
+}
+
+/// F and τ at points: inside is what the real boundary encloses, itself included, to 1e-9 of the size.
+fn points_report(parts: &[SolvedPart], points: &[Point]) -> Vec<PointReport> {
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let of_part = |part: &SolvedPart| SAME_POINT_REL * mesh_of(part).cloud().size();
+    let tolerance: Vec<f64> = parts.iter().map(of_part).collect();
+    let indices: Vec<TriangleIndex> = parts.iter().map(|part| TriangleIndex::new(mesh_of(part))).collect();
+    let report = |&at: &Point| {
+        let found = parts.iter().enumerate().find_map(|(k, part)| {
+            let field = part.solution.at(mesh_of(part), &indices[k], at, tolerance[k])?;
+            Some((part.part.name.clone(), field))
+        });
+        match found {
+            Some((name, field)) => {
+                let stress = Stress::of_gradient(field.gradient);
+                PointReport {
+                    at,
+                    subdomain: Some(name),
+                    f: Some(field.value),
+                    tau_zx: Some(stress.zx),
+                    tau_zy: Some(stress.zy),
+                    tau: Some(stress.magnitude()),
+                }
+            }
+            None => PointReport { at, subdomain: None, f: None, tau_zx: None, tau_zy: None, tau: None },
+        }
+    };
+    points.iter().map(report).collect()
+}
+
+fn mesh_of(part: &SolvedPart) -> &Mesh {
+    &part.part.mesh
+}

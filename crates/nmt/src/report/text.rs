@@ -1,0 +1,153 @@
+//! The report as text: the paper's report of generated and deleted nodes, mesh, solver, results.
+
+use crate::report::model::{PointReport, Report, SolutionReport, SubdomainReport};
+use std::fmt::Write as _;
+
+/// Width of the left column.
+const LABEL: usize = 24;
+
+/// The report for a terminal; warnings are not in it, they belong to stderr.
+pub fn text(report: &Report) -> String {
+    let mut out = Text { out: String::new(), length: unit(&report.units) };
+    if !report.title.is_empty() {
+        out.heading(&report.title);
+    }
+    for subdomain in &report.subdomains {
+        out.subdomain(subdomain);
+    }
+    if let Some(points) = report.points.as_ref().filter(|points| !points.is_empty()) {
+        out.points(points);
+    }
+    out.out
+}
+
+fn unit(units: &str) -> impl Fn(i32) -> String + use<> {
+    let units = units.to_owned();
+    move |power| match (units.as_str(), power) {
+        ("", _) | (_, 0) => String::new(),
+        (unit, 1) => format!(" {unit}"),
+        (unit, 2) => format!(" {unit}²"),
+        (unit, 3) => format!(" {unit}³"),
+        (unit, 4) => format!(" {unit}⁴"),
+        (unit, power) => format!(" {unit}^{power}"),
+    }
+}
+
+struct Text<U: Fn(i32) -> String> {
+    out: String,
+    length: U,
+}
+
+impl<U: Fn(i32) -> String> Text<U> {
+    fn heading(&mut self, title: &str) {
+        let line = "─".repeat(title.chars().count());
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.out, "{title}\n{line}");
+    }
+
+    fn row(&mut self, label: &str, value: impl std::fmt::Display) {
+        let padding = " ".repeat(LABEL.saturating_sub(label.chars().count()));
+        let _ = writeln!(self.out, "  {label}{padding}{value}");
+    }
+
+    fn subdomain(&mut self, s: &SubdomainReport) {
+        let (u1, u2) = ((self.length)(1), (self.length)(2));
+        let _ = writeln!(self.out, "Subdomain \"{}\"", s.name);
+        let census = &s.census;
+        let interior = s.nodes - s.boundary_nodes;
+        self.row("nodes", format!("{} ({} on the boundary, {interior} inside)", s.nodes, s.boundary_nodes));
+        self.row("spacing h_x, h_y", format!("{}, {}{u1}", number(s.spacing[0]), number(s.spacing[1])));
+        self.row(
+            "grid points",
+            format!(
+                "{}: {} outside, {} in holes, {} too near to an edge, {} too near to a boundary node, {} kept",
+                census.grid, census.outside, census.in_hole, census.near_edge, census.near_node, census.kept
+            ),
+        );
+        if let (Some(triangles), Some(area), Some(centroid)) = (s.triangles, s.area, s.centroid) {
+            self.row("triangles", triangles);
+            self.row("area", format!("{}{u2}", number(area)));
+            self.row("centroid", place(centroid));
+        }
+        if let Some(q) = &s.quality {
+            self.row(
+                "quality",
+                format!("min {:.3}, mean {:.3}, smallest angle {:.1}°", q.min, q.mean, q.min_angle_deg),
+            );
+        }
+        if let Some(solution) = &s.solution {
+            self.solution(solution);
+        }
+        self.out.push('\n');
+    }
+
+    fn solution(&mut self, s: &SolutionReport) {
+        let (u2, u3, u4) = ((self.length)(2), (self.length)(3), (self.length)(4));
+        self.row("formulation", format!("{}, order {}, {} unknowns", s.formulation, s.order, s.unknowns));
+        let stars = &s.stars;
+        self.row(
+            "stars",
+            format!(
+                "of {} nodes: {} enlarged, {} of lower order, {} hidden nodes skipped, worst condition {:.1}",
+                stars.size, stars.enlarged, stars.order_lowered, stars.hidden_nodes_skipped, stars.worst_condition
+            ),
+        );
+        self.row("linear residual", format!("{:.1e}", s.linear_residual));
+        for hole in &s.holes {
+            let label = format!("hole \"{}\"", hole.name);
+            self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));
+        }
+        self.row("J", format!("{}{u4}", number(s.j)));
+        self.row("torque T", number(s.torque));
+        self.row("twist θ", number(s.twist));
+        self.row("W_t = T/τ_max", format!("{}{u3}", number(s.w_t)));
+        self.row("F_max", format!("{} at {}", number(s.f_max), place(s.f_max_at)));
+        let grows =
+            if s.tau_singular_at.is_empty() { "" } else { " (largest at nodes; infinite at re-entrant vertices)" };
+        self.row("τ_max", format!("{} at {}{grows}", number(s.tau_max), place(s.tau_max_at)));
+    }
+
+    fn points(&mut self, points: &[PointReport]) {
+        let _ = writeln!(self.out, "Points");
+        for point in points {
+            let label = place(point.at);
+            match (point.f, point.tau_zx, point.tau_zy, point.tau, &point.subdomain) {
+                (Some(f), Some(zx), Some(zy), Some(tau), Some(name)) => {
+                    let [f, zx, zy, tau] = [f, zx, zy, tau].map(number);
+                    self.row(&label, format!("F = {f}, τ_zx = {zx}, τ_zy = {zy}, τ = {tau}   in \"{name}\""));
+                }
+                _ => self.row(&label, "outside"),
+            }
+        }
+        self.out.push('\n');
+    }
+}
+
+fn place([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", number(x), number(y))
+}
+
+/// Seven significant digits, with an exponent where zeros would hide them.
+fn number(v: f64) -> String {
+    let size = v.abs();
+    if size == 0.0 {
+        "0".into()
+    } else if (1e-4..1e7).contains(&size) {
+        let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
+        let text = format!("{v:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    } else {
+        format!("{v:.6e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_have_seven_significant_digits_and_no_trailing_zeros() {
+        let shown = [0.0, 1.0, -0.25, 0.140_577_014_9, 123_456.789, 1.5e-9, 2.0e12].map(number);
+        assert_eq!(shown, ["0", "1", "-0.25", "0.140577", "123456.8", "1.500000e-9", "2.000000e12"]);
+    }
+}

@@ -1,0 +1,113 @@
+//! How many nodes lie across the thinnest part of a cloud.
+
+use nmt_cloud::Cloud;
+use nmt_geom::point::{along, cross, distance, dot, sub};
+use nmt_geom::{LoopId, Point};
+
+/// Fewer nodes across a part than this, both walls included, and its stresses mean little.
+pub const FEWEST_ACROSS: usize = 4;
+
+/// Walls whose directions differ by more than this cosine do not face each other.
+const FACING_COSINE: f64 = -0.9;
+
+/// Walls more nearly parallel than this cosine bound a strip; others may just be the sides of a corner.
+const PARALLEL_COSINE: f64 = -0.999;
+
+/// The sides of a corner are joined within this many widths along the boundary; the walls of a strip are not.
+const CORNER_PATH: f64 = 8.0;
+
+/// The thinnest part of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinSpot {
+    /// Nodes across it, both walls included.
+    pub nodes_across: usize,
+    /// In the middle between the walls.
+    pub at: Point,
+}
+
+/// The thinnest part with fewer than [`FEWEST_ACROSS`] nodes across, measured from the middle of each boundary segment
+/// to the wall it faces; `None` where there is none.
+pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
+    let boundary = cloud.boundary();
+    let index = boundary.segment_index();
+    let [h_x, h_y] = cloud.spacing();
+    let ends: Vec<[Point; 2]> = boundary.all_ends().collect();
+    let lengths: Vec<f64> = ends.iter().map(|[a, b]| distance(*a, *b)).collect();
+    let mut before = Vec::with_capacity(ends.len()); // length along its loop before each segment
+    let mut loop_length = Vec::with_capacity(ends.len());
+    for ring in 0..boundary.n_loops() {
+        let count = boundary.loop_segments(LoopId::of(ring)).len();
+        let total: f64 = lengths[before.len()..before.len() + count].iter().sum();
+        let mut so_far = 0.0;
+        for _ in 0..count {
+            so_far += lengths[before.len()];
+            before.push(so_far - lengths[before.len()]);
+        }
+        loop_length.extend(std::iter::repeat_n(total, count));
+    }
+    let mut thinnest: Option<(f64, Point)> = None;
+    for (k, [a, b]) in ends.iter().enumerate() {
+        let direction = sub(*b, *a);
+        let normal = [-direction[1] / lengths[k], direction[0] / lengths[k]]; // into the material
+        let middle = along(*a, 0.5, direction);
+        // Spacings that a unit step along the normal counts for.
+        let rate = (normal[0].abs() / h_x).max(normal[1].abs() / h_y);
+        let reach = (FEWEST_ACROSS - 1) as f64 / rate * (1.0 - 1e-9);
+        let mut nearest: Option<(f64, usize)> = None;
+        index.candidates(middle, along(middle, reach, normal), 0.0, |other| {
+            let Some(t) = hit(middle, normal, ends[other]) else { return };
+            if other != k && t <= reach && nearest.is_none_or(|(best, _)| t < best) {
+                nearest = Some((t, other));
+            }
+        });
+        let Some((width, other)) = nearest else { continue };
+        let facing = dot(direction, sub(ends[other][1], ends[other][0])) / (lengths[k] * lengths[other]);
+        let same_loop = boundary.loop_of_segment(k) == boundary.loop_of_segment(other);
+        let apart = (before[k] - before[other]).abs();
+        let path = if same_loop { apart.min(loop_length[k] - apart) } else { f64::INFINITY };
+        let side_of_a_corner = facing > PARALLEL_COSINE && path < CORNER_PATH * width;
+        let across = width * rate;
+        if facing < FACING_COSINE && !side_of_a_corner && thinnest.is_none_or(|(least, _)| across < least) {
+            thinnest = Some((across, along(middle, width / 2.0, normal)));
+        }
+    }
+    thinnest.map(|(across, at)| ThinSpot { nodes_across: (across + 1e-9).floor() as usize + 1, at })
+}
+
+/// Distance along the ray from `p` to the segment; `None` where it misses.
+fn hit(p: Point, direction: Point, [a, b]: [Point; 2]) -> Option<f64> {
+    let (v, to_a) = (sub(b, a), sub(a, p));
+    let denominator = cross(direction, v);
+    let (t, s) = (cross(to_a, v) / denominator, cross(to_a, direction) / denominator);
+    (t > 0.0 && (0.0..=1.0).contains(&s)).then_some(t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nmt_cloud::{CloudParams, Section, generate};
+    use nmt_curve::Outline;
+
+    fn thin(section: &Section, nodes: [usize; 2]) -> Option<usize> {
+        let cloud = generate(section, &CloudParams { nodes, ..CloudParams::default() });
+        thinnest(&cloud.expect("a cloud")).map(|spot| spot.nodes_across)
+    }
+
+    #[test]
+    fn a_wall_of_two_spacings_has_three_nodes_across() {
+        let tube = |wall: f64| Section {
+            contour: Outline::rectangle([0.0, 0.0], [4.0, 2.0]),
+            holes: vec![Outline::rectangle([wall, wall], [4.0 - wall, 2.0 - wall])],
+        };
+        assert_eq!(thin(&tube(0.1), [81, 41]), Some(3));
+        assert_eq!(thin(&tube(0.2), [81, 41]), None);
+    }
+
+    #[test]
+    fn corners_are_not_thin() {
+        let triangle = Section::solid(Outline::polygon(vec![[0.0, 0.0], [4.0, 0.0], [0.0, 1.0]]));
+        assert_eq!(thin(&triangle, [41, 21]), None);
+        assert_eq!(thin(&Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0])), [4, 4]), None);
+        assert_eq!(thin(&Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0])), [9, 3]), Some(3));
+    }
+}
