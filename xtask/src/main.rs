@@ -1,1 +1,37 @@
-fn main() {}
+//! Tasks of the nmt workspace: `cargo xtask TASK`.
+
+mod figures;
+mod golden;
+mod licences;
+mod suite;
+
+use anyhow::{Result, bail};
+
+const TASKS: &str = "\
+cargo xtask test                  every test: unit, property, doc and integration tests, golden results, files read by meshio
+cargo xtask golden                results of the shipped problems against fixtures/golden; the worst entry of each
+cargo xtask golden --regenerate   rewrite fixtures/golden from the present code (say in the commit why numbers moved)
+cargo xtask figures               redraw docs/figures
+cargo xtask licences              licences of all dependencies against the list of allowed ones";
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match arguments[..] {
+        ["test"] => suite::test(),
+        ["golden"] => golden::compare(),
+        ["golden", "--regenerate"] => golden::regenerate(),
+        ["figures"] => figures::draw(),
+        ["licences"] => licences::check(),
+        [] => {
+            println!("{TASKS}");
+            Ok(())
+        }
+        _ => bail!("unknown task; the tasks are\n{TASKS}"),
+    }
+}
+
+/// The top of the workspace.
+fn root() -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}

@@ -1,9 +1,20 @@
 //! A star that cannot carry its polynomial is enlarged, then the order is lowered; who it was is kept.
 
-use crate::basis::n_monomials;
+use crate::basis::{MAX_ORDER, n_monomials};
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::star::{StarFinder, default_star};
 use nmt_geom::{NodeId, Point};
+
+/// A star of order p whose condition number is above `SOUND_CONDITION[p]` is enlarged, to see whether more nodes help;
+/// the best one is kept.
+///
+/// Measured on irregular clouds: stars of order 2 lie between 5 and 60, but one in 10⁵, at a wall, reaches 400, and its
+/// polynomial is then wrong by as much as its stress is: J of a square at 41 across is off by 7e-5 with that star, by
+/// 1e-5 with 10 nodes in it. Stars of order 3 lie between 100 and 350.
+const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
+
+/// A star grows by its size over this at a time.
+const ENLARGEMENT_STEPS: usize = 8;
 
 /// A star is enlarged to at most this many times its size before the order is lowered.
 const MAX_ENLARGEMENT: usize = 2;
@@ -34,20 +45,53 @@ pub(crate) fn sound_star(
 ) -> StarOutcome {
     for lower in (1..=order).rev() {
         let first_size = if lower == order { size } else { default_star(lower) }.max(n_monomials(lower));
-        let step = (first_size / 4).max(1);
+        let sizes = first_size..=first_size * MAX_ENLARGEMENT;
+        let mut best: Option<Candidate> = None;
         let mut last_found = 0;
-        for wanted in (first_size..=first_size * MAX_ENLARGEMENT).step_by(step) {
-            let hidden = finder.find(node, wanted, star);
+        for wanted in sizes.step_by((first_size / ENLARGEMENT_STEPS).max(1)) {
+            let candidate = try_star(finder, mwls, xy, node, lower, wanted, star);
             if star.len() == last_found {
                 break; // no more nodes are visible
             }
             last_found = star.len();
-            let Some(centre) = star.iter().position(|n| *n == node) else { break };
-            let condition = mwls.factorise(star.iter().map(|n| xy[n.index()]), xy[node.index()], centre, lower);
-            if condition <= MAX_CONDITION {
-                return StarOutcome { order: lower, enlarged: wanted > first_size, hidden, condition };
+            if best.is_none_or(|best| candidate.condition < best.condition) {
+                best = Some(candidate);
             }
+            if candidate.condition <= SOUND_CONDITION[lower] {
+                break;
+            }
+        }
+        if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
+            // The star of the last try may not be the best one: find that again.
+            let Candidate { wanted, hidden, condition } = best;
+            try_star(finder, mwls, xy, node, lower, wanted, star);
+            return StarOutcome { order: lower, enlarged: wanted > first_size, hidden, condition };
         }
     }
     StarOutcome { order: 0, enlarged: true, hidden: 0, condition: f64::INFINITY }
+}
+
+/// A star that was tried.
+#[derive(Clone, Copy)]
+struct Candidate {
+    wanted: usize,
+    hidden: usize,
+    condition: f64,
+}
+
+fn try_star(
+    finder: &mut StarFinder,
+    mwls: &mut Mwls,
+    xy: &[Point],
+    node: NodeId,
+    order: usize,
+    wanted: usize,
+    star: &mut Vec<NodeId>,
+) -> Candidate {
+    let hidden = finder.find(node, wanted, star);
+    let condition = match star.iter().position(|n| *n == node) {
+        Some(centre) => mwls.factorise(star.iter().map(|n| xy[n.index()]), xy[node.index()], centre, order),
+        None => f64::INFINITY,
+    };
+    Candidate { wanted, hidden, condition }
 }

@@ -2,7 +2,7 @@
 
 use crate::sections::params;
 use nmt_cloud::{CloudError, CloudParams, Section, generate};
-use nmt_curve::{Curve, CurveError, Expression, Outline};
+use nmt_curve::{Curve, Expression, Outline};
 use proptest::prelude::*;
 
 /// The densities that a remedy such as "nodes = [12, 8] would do" names.
@@ -59,7 +59,7 @@ fn an_edge_that_cannot_be_divided_is_named_by_its_number() {
     let y = Expression::parse("1 + 0/(x-0.5)*0", &["x"]).expect("a formula");
     contour.edges[2].curve = Curve::Graph { y, from_x: 1.0, to_x: 0.0 };
     let error = generate(&Section::solid(contour), &CloudParams::default());
-    assert!(matches!(error, Err(CloudError::Edge { edge: 2, source: CurveError::NotFinite { .. } })), "{error:?}");
+    assert!(matches!(error, Err(CloudError::Edge { edge: 2, .. })), "{error:?}");
 }
 
 #[test]
@@ -103,7 +103,7 @@ proptest! {
     fn the_density_advised_for_curves_too_close_for_their_polygons_keeps_them_apart(
         gap in 0.01..0.1f64, nodes in prop::array::uniform2(3usize..12),
     ) {
-        // An elliptic hole in a wave-topped plate, and a round one in a disc whose polygon cuts into it.
+        // A disc and a round hole turned by 0.3: the corners of one polygon cut through the sides of the other.
         let disc = Section {
             contour: Outline::circle([0.0, 0.0], 1.0),
             holes: vec![Outline::ellipse([0.0, 0.0], [1.0 - gap, 1.0 - gap], 0.3)],

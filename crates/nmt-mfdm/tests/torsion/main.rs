@@ -1,0 +1,9 @@
+//! Sections solved from outline to result: against exact solutions, against themselves in other units and places, and
+//! star by star.
+
+mod convergence;
+mod holes;
+mod invariance;
+mod problem;
+mod sections;
+mod stars;

@@ -1,0 +1,179 @@
+//! Stars and stencils on whole clouds: who is in them, and what their rows reproduce.
+
+use crate::sections::{holed_l, keyway, mesh, params, semicircle};
+use nmt_cloud::{Cloud, Nearest, Section};
+use nmt_curve::Outline;
+use nmt_geom::point::distance;
+use nmt_geom::{NodeId, Point, segment};
+use nmt_mfdm::{StarFinder, StarParams, Stencils, Visibility, n_monomials, row};
+use nmt_tri::Mesh;
+use proptest::prelude::*;
+
+/// A plate 4 × 2 with a slot from above, `width` wide at its bottom and twice that at its mouth.
+fn slotted(width: f64) -> Section {
+    Section::solid(Outline::polygon([
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 2.0],
+        [1.7 + width, 2.0],
+        [1.7 + width / 2.0, 0.6],
+        [1.7 - width / 2.0, 0.6],
+        [1.7 - width, 2.0],
+        [0.0, 2.0],
+    ]))
+}
+
+/// The stars of `size` of all nodes.
+fn stars(cloud: &Cloud, size: usize) -> Vec<Vec<NodeId>> {
+    let (nearest, visibility) = (Nearest::new(cloud.xy()), Visibility::new(cloud));
+    let mut finder = StarFinder::new(cloud.xy(), &nearest, &visibility);
+    let mut star = Vec::new();
+    (0..cloud.n_nodes())
+        .map(|node| {
+            finder.find(NodeId::of(node), size, &mut star);
+            star.clone()
+        })
+        .collect()
+}
+
+#[test]
+fn the_star_of_an_interior_node_never_reaches_across_a_slit() {
+    for width in [1e-6, 1e-3, 0.04, 0.3] {
+        for irregularity in [0.0, 0.3] {
+            let mesh = mesh(&slotted(width), &params([41, 21], irregularity, 1));
+            let xy = mesh.xy();
+            // Beside the slit, above its bottom; nodes of its walls are on their own side.
+            let beside = |n: usize| xy[n][1] > 0.6 + 1e-9;
+            let stars = stars(mesh.cloud(), 20);
+            let mut seen = 0;
+            for node in (mesh.cloud().n_boundary()..xy.len()).filter(|n| beside(*n)) {
+                let on_left = xy[node][0] < 1.7;
+                for other in stars[node].iter().map(|o| o.index()).filter(|o| beside(*o)) {
+                    assert_eq!(xy[other][0] < 1.7, on_left, "width {width}: {:?} sees {:?}", xy[node], xy[other]);
+                    seen += 1;
+                }
+            }
+            assert!(seen > 1000, "the plate has nodes beside its slit");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn no_member_of_a_star_is_behind_a_wall(
+        which in 0usize..4, irregularity in prop_oneof![Just(0.0), 0.01..0.45f64], seed in any::<u64>(), size in 6usize..24,
+    ) {
+        let section = match which {
+            0 => holed_l(1.0, [0.0, 0.0]),
+            1 => slotted(0.2),
+            2 => keyway().section,
+            _ => semicircle(),
+        };
+        let mesh = mesh(&section, &params([31, 21], irregularity, seed));
+        let cloud = mesh.cloud();
+        let margin = 1e-9 * cloud.size(); // what visibility promises
+        for (node, star) in stars(cloud, size).iter().enumerate() {
+            prop_assert!(star.contains(&NodeId::of(node)), "the centre belongs");
+            prop_assert!(star.windows(2).all(|pair| pair[0] < pair[1]), "ascending, none twice");
+            prop_assert_eq!(star.len(), size);
+            let p = cloud.xy()[node];
+            for other in star {
+                let q = cloud.xy()[other.index()];
+                let crossed = cloud.boundary().all_ends().any(|[a, b]| segment::cross_properly(p, q, a, b, margin));
+                prop_assert!(!crossed, "{:?} and {:?}", p, q);
+            }
+        }
+    }
+
+    #[test]
+    fn stars_far_from_the_boundary_are_the_nearest_nodes(seed in any::<u64>(), size in 6usize..20) {
+        let mesh = mesh(&holed_l(1.0, [0.0, 0.0]), &params([46, 31], 0.3, seed));
+        let (xy, stars) = (mesh.xy(), stars(mesh.cloud(), size));
+        let far = |p: Point| mesh.cloud().boundary().all_ends().all(|[a, b]| segment::distance_to(p, a, b) > 0.2);
+        for node in (0..xy.len()).filter(|n| far(xy[*n])) {
+            let farthest = stars[node].iter().map(|o| distance(xy[o.index()], xy[node])).fold(0.0, f64::max);
+            let nearer = (0..xy.len()).filter(|o| distance(xy[*o], xy[node]) < farthest * (1.0 - 1e-9)).count();
+            prop_assert!(nearer < size, "{} nodes are nearer than the farthest of {}", nearer, size);
+        }
+    }
+}
+
+/// A polynomial of `order` about the origin with coefficients that differ, and its derivatives.
+struct Polynomial {
+    order: usize,
+}
+
+impl Polynomial {
+    fn coefficient(a: usize, b: usize) -> f64 {
+        1.0 + 0.37 * a as f64 - 0.61 * b as f64
+    }
+
+    /// ∂^(i+j)/∂x^i∂y^j at a point.
+    fn derivative(&self, [x, y]: Point, i: usize, j: usize) -> f64 {
+        let falling = |n: usize, k: usize| (n + 1 - k..=n).product::<usize>() as f64;
+        let mut sum = 0.0;
+        for a in i..=self.order {
+            for b in j..=self.order.saturating_sub(a) {
+                let factor = falling(a, i) * falling(b, j) * Self::coefficient(a, b);
+                sum += factor * x.powi((a - i) as i32) * y.powi((b - j) as i32);
+            }
+        }
+        sum
+    }
+}
+
+fn assert_reproduces(mesh: &Mesh, params: StarParams) {
+    let cloud = mesh.cloud();
+    let (nearest, visibility) = (Nearest::new(cloud.xy()), Visibility::new(cloud));
+    let stencils = Stencils::new(cloud, &visibility, &nearest, params, 0..cloud.n_nodes());
+    let report = stencils.report();
+    assert_eq!(report.order_lowered, 0);
+    let polynomial = Polynomial { order: params.order };
+    let values: Vec<f64> = cloud.xy().iter().map(|p| polynomial.derivative(*p, 0, 0)).collect();
+    let largest = values.iter().fold(0.0f64, |l, v| l.max(v.abs()));
+    for node in 0..cloud.n_nodes() {
+        let stencil = stencils.of(NodeId::of(node));
+        assert!(stencil.nodes.len() >= n_monomials(params.order));
+        for i in 0..=params.order {
+            for j in 0..=params.order - i {
+                if i + j == 0 {
+                    continue;
+                }
+                let coefficients = stencil.row(row(i, j));
+                let found: f64 = coefficients.iter().zip(stencil.nodes).map(|(c, n)| c * values[n.index()]).sum();
+                let exact = polynomial.derivative(cloud.xy()[node], i, j) * stencil.radius.powi((i + j) as i32);
+                // Rounding of the values times the condition of the star.
+                let tolerance = 1e-14 * report.worst_condition * largest;
+                assert!((found - exact).abs() < tolerance, "node {node}, derivative {i} {j}: {found} {exact}");
+                assert!(coefficients.iter().sum::<f64>().abs() < 1e-13 * report.worst_condition); // constants vanish
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_reproduce_quadratics_and_cubics_on_irregular_clouds_with_holes() {
+    for section in [holed_l(1.0, [0.0, 0.0]), slotted(0.3), keyway().section] {
+        for (irregularity, seed) in [(0.0, 0), (0.25, 1), (0.45, 2)] {
+            let mesh = mesh(&section, &params([46, 31], irregularity, seed));
+            assert_reproduces(&mesh, StarParams { order: 2, size: 9 });
+            assert_reproduces(&mesh, StarParams { order: 3, size: 20 });
+        }
+    }
+}
+
+#[test]
+fn a_section_has_the_same_stars_in_every_unit() {
+    for irregularity in [0.0, 0.3] {
+        let stars_in = |unit: f64| {
+            let mesh = mesh(&holed_l(unit, [0.0, 0.0]), &params([46, 31], irregularity, 1));
+            stars(mesh.cloud(), 9)
+        };
+        let one = stars_in(1.0);
+        for unit in [1e-3, 1e3, 1e6, 0.3048] {
+            assert_eq!(stars_in(unit), one);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+"""Reads every file that `nmt solve` writes for the shipped problems, and recomputes what can be recomputed.
+
+Usage: check_files.py NMT PROBLEMS OUT
+"""
+import csv
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+import meshio
+import numpy as np
+
+nmt, problems, out = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+checked = 0
+
+
+def expect(condition, message):
+    global checked
+    checked += 1
+    if not condition:
+        sys.exit(f"check_files: {message}")
+
+
+for problem in sorted(problems.glob("*.toml")):
+    where = out / problem.stem
+    subprocess.run([nmt, "solve", problem, "--out", where, "--json", "--nodes", "25,25"], check=True, capture_output=True)
+    report = json.loads((where / "report.json").read_text())
+    mesh = meshio.read(where / "mesh.vtu")
+    triangles = mesh.cells_dict["triangle"]
+    with open(where / "nodes.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+
+    expect(len(mesh.points) == len(rows) == report["totals"]["nodes"], f"{problem}: numbers of nodes differ")
+    expect(set(mesh.point_data) == {"node", "kind", "F", "tau_zx", "tau_zy", "tau"}, f"{problem}: point data")
+    expect(set(mesh.cell_data) == {"subdomain", "area", "quality", "residual"}, f"{problem}: cell data")
+    xy = np.array([[float(row["x"]), float(row["y"])] for row in rows])
+    expect(np.array_equal(xy, mesh.points[:, :2]), f"{problem}: coordinates of nodes.csv and mesh.vtu differ")
+    for name in ("F", "tau_zx", "tau_zy", "tau"):
+        values = np.array([float(row[name]) for row in rows])
+        expect(np.array_equal(values, mesh.point_data[name]), f"{problem}: {name} of nodes.csv and mesh.vtu differ")
+    expect(np.allclose(np.hypot(mesh.point_data["tau_zx"], mesh.point_data["tau_zy"]), mesh.point_data["tau"], rtol=1e-12),
+           f"{problem}: tau is not the magnitude of its components")
+
+    a, b, c = (mesh.points[triangles[:, k], :2] for k in range(3))
+    areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    expect(areas.min() > 0, f"{problem}: a triangle is not counter-clockwise")
+    expect(np.allclose(areas, mesh.cell_data["area"][0], rtol=1e-9), f"{problem}: areas differ")
+    for number, subdomain in enumerate(report["subdomains"]):
+        own = mesh.cell_data["subdomain"][0] == number
+        expect(own.sum() == subdomain["triangles"], f"{problem}: numbers of triangles differ")
+        expect(abs(areas[own].sum() / subdomain["area"] - 1) < 1e-12, f"{problem}: area of the report differs")
+        expect(all(np.isfinite(subdomain[key]) for key in ("J", "torque", "F_max", "tau_max", "W_t")), f"{problem}: not finite")
+        # Integral of the linear interpolant: close to the report's J, which has three digits more.
+        f = mesh.point_data["F"][triangles[own]].mean(axis=1)
+        holes = sum(hole["F"] * hole["area"] for hole in subdomain["holes"])
+        torque = 2 * (f * areas[own]).sum() + 2 * holes
+        expect(abs(torque / subdomain["torque"] - 1) < 0.1, f"{problem}: torque {torque} against {subdomain['torque']}")
+
+    for picture in ("nodes", "mesh", "solution"):
+        root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
+        expect(root.tag.endswith("svg"), f"{problem}: {picture}.svg is no SVG")
+        head = (where / f"{picture}.png").read_bytes()[:24]
+        width, height = struct.unpack(">II", head[16:24])
+        expect(head[:8] == b"\x89PNG\r\n\x1a\n" and min(width, height) > 200, f"{problem}: {picture}.png")
+
+expect(checked > 100, "no problem was found")
+print(f"{checked} passed, 0 failed")
