@@ -2,34 +2,23 @@
 
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::{mesh_svg, nodes_svg, solution_svg};
+use nmt::figures::solution_svg;
 use nmt::prelude::*;
 use std::fs;
 
-/// Problem, density and the pictures wanted: coarser than the files', so that nodes can be told apart.
-const FIGURES: [(&str, [usize; 2], &[&str]); 2] =
-    [("paper-3", [61, 46], &["nodes", "mesh", "solution"]), ("paper-2", [41, 31], &["solution"])];
+/// The problems whose four panels the documentation shows.
+const SHOWN: [&str; 1] = ["paper-3"];
 
 /// Redraws docs/figures.
 pub fn draw() -> Result<()> {
-    let directory = root().join("docs/figures");
-    fs::create_dir_all(&directory)?;
-    for (name, nodes, wanted) in FIGURES {
+    for name in SHOWN {
         let file = root().join(format!("fixtures/problems/{name}.toml"));
         let text = fs::read_to_string(&file).with_context(|| format!("{} cannot be read", file.display()))?;
-        let overrides = Overrides { nodes: Some(nodes), ..Overrides::default() };
-        let problem = Problem::parse(name, &text, &overrides).map_err(nmt::NmtError::Problem)?;
-        let solved = solve_problem(&problem)?;
-        let meshes = || solved.iter().map(|s| (&*s.part.name, &s.part.mesh));
-        for picture in wanted {
-            let svg = match *picture {
-                "nodes" => nodes_svg(&problem, meshes().map(|(name, mesh)| (name, mesh.cloud()))),
-                "mesh" => mesh_svg(&problem, meshes()),
-                _ => solution_svg(&problem, &solved),
-            };
-            fs::write(directory.join(format!("{name}-{picture}.png")), nmt::plot::png(&svg)?)?;
-            println!("{name}-{picture}.png");
-        }
+        let problem = Problem::parse(name, &text, &Overrides::default()).map_err(nmt::NmtError::Problem)?;
+        let picture = nmt::plot::png(&solution_svg(&problem, &solve_problem(&problem)?))?;
+        let target = root().join(format!("docs/figures/{name}.png"));
+        fs::write(&target, picture).with_context(|| format!("{} cannot be written", target.display()))?;
+        println!("{name}.png");
     }
     Ok(())
 }

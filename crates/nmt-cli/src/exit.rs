@@ -100,7 +100,8 @@ fn annotated(error: &ProblemError, source: &Source) -> String {
     if error.is_of_an_option() || span.is_empty() {
         return format!("error: {error}");
     }
-    let headline = error.to_string();
+    let item = if error.item.is_empty() { String::new() } else { format!("{}: ", error.item) };
+    let headline = format!("{item}{}", error.message);
     // The whole of a long table says nothing: point at its first line.
     let end = source.text[span.clone()].find('\n').map_or(span.end, |newline| span.start + newline);
     let snippet = Snippet::source(source.text.as_str())

@@ -2,7 +2,7 @@
 
 use crate::census::Census;
 use crate::error::CloudError;
-use nmt_geom::{EdgeId, NodeId, Point, RealBoundary};
+use nmt_geom::{EdgeId, LoopId, NodeId, Point, RealBoundary};
 
 /// What kind of node it is; the paper's Nodes_codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -63,12 +63,18 @@ impl Cloud {
             edges[segment.to.index()].first = segment.edge;
             edges[segment.from.index()].second = segment.edge;
         }
-        // Report the edges in the order of the outline, whichever way the loop was turned.
-        for node in &mut edges {
-            let NodeEdges { first, second } = *node;
-            let wraps = first.0.abs_diff(second.0) > 1;
-            if (first > second) != wraps && first != second {
-                *node = NodeEdges { first: second, second: first };
+        // Report the edges in the order of the outline, whichever way the loop was turned: the first vertex of a loop
+        // begins its first edge.
+        for ring in 0..boundary.n_loops() {
+            let segments = boundary.loop_segments(LoopId::of(ring));
+            let Some(first_vertex) = segments.iter().map(|s| s.from).min() else { continue };
+            let first_edge = segments.iter().map(|s| s.edge).min();
+            let NodeEdges { first, second } = edges[first_vertex.index()];
+            if first != second && Some(first) == first_edge {
+                for segment in segments {
+                    let NodeEdges { first, second } = edges[segment.from.index()];
+                    edges[segment.from.index()] = NodeEdges { first: second, second: first };
+                }
             }
         }
         let mut xy = boundary.xy().to_vec();

@@ -13,8 +13,9 @@ use nmt_geom::{Location, Point, RealBoundary, RegionFault, SegmentIndex, ring};
 /// Grid points that a cloud may have at most.
 pub const MAX_GRID_POINTS: f64 = 1.0e8;
 
-/// Memory of a grid point through cloud, mesh and solution, bytes; what a run of 10⁵ nodes took.
-const BYTES_PER_GRID_POINT: f64 = 2.0e3;
+/// Memory of a grid point through cloud, mesh and solution, bytes: runs of 10⁵ nodes took 10⁴ a node, most of it in the
+/// factorisation.
+pub const BYTES_PER_GRID_POINT: f64 = 1.0e4;
 
 /// Draws a node may take until its displaced place is clear of the boundary; then it stays.
 const MAX_DRAWS: usize = 8;
@@ -175,7 +176,7 @@ fn advise(params: &CloudParams, does: impl Fn(&CloudParams) -> bool) -> Option<[
         }
         let hole_nodes =
             params.hole_nodes.iter().map(|own| own.map(|n| n.map(|n| (n as f64 * factor).ceil() as usize)));
-        let finer = CloudParams { nodes, hole_nodes: hole_nodes.collect(), irregularity: 0.0, ..params.clone() };
+        let finer = CloudParams { nodes, hole_nodes: hole_nodes.collect(), ..params.clone() };
         if does(&finer) {
             return Some(nodes);
         }
@@ -190,7 +191,7 @@ fn density_that_does_not_cross(section: &Section, params: &CloudParams) -> Strin
     };
     match advise(params, does) {
         Some([n_x, n_y]) => format!("nodes = [{n_x}, {n_y}] would do"),
-        None => "keep the curves further apart".into(),
+        None => "give edges with `nodes` of their own more of them, or keep the curves further apart".into(),
     }
 }
 
@@ -212,7 +213,9 @@ fn density_with_interior(section: &Section, params: &CloudParams) -> String {
     };
     match advise(params, does) {
         Some([n_x, n_y]) => format!("nodes = [{n_x}, {n_y}] would give some"),
-        None => "the section is too thin for a grid of 10⁶ points: choose more nodes across it".into(),
+        None => {
+            "a grid of 10⁶ points in this proportion gives none either: choose more nodes across the thin parts".into()
+        }
     }
 }
 

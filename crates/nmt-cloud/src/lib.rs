@@ -3,7 +3,7 @@
 //! A cloud begins with the vertices of the outline, goes on with nodes along its edges, evenly by arc length, and ends
 //! with the points of a background grid that are inside and clear of the boundary; an irregular cloud then slides its
 //! edge nodes along their edges and moves its interior nodes at random, by a counter-based generator, so that one seed
-//! gives one cloud everywhere. After S. Milewski's nodes_mesh_tool; `\[D3\]` … are the points where nmt departs from it.
+//! gives one cloud everywhere. After S. Milewski's nodes_mesh_tool; \[D3\] … are the points where nmt departs from it.
 //!
 //! ```
 //! use nmt_cloud::{CloudParams, NodeKind, Section, generate};
@@ -37,7 +37,7 @@ pub use census::Census;
 pub use clearance::Clearance;
 pub use cloud::{Cloud, NodeEdges, NodeKind};
 pub use error::CloudError;
-pub use generate::{MAX_GRID_POINTS, generate};
+pub use generate::{BYTES_PER_GRID_POINT, MAX_GRID_POINTS, generate};
 pub use irregular::Displacements;
 pub use lattice::Lattice;
 pub use nearest::{Nearest, Scratch, TIE_REL};

@@ -26,7 +26,7 @@ pub struct TorsionSolution {
     pub twist: f64,
     /// Gθ.
     pub g_theta: f64,
-    /// W_t = T/τ_max, length³.
+    /// W_t = |T|/τ_max, length³.
     pub w_t: f64,
     /// Largest F, with one Newton step from the node.
     pub f_max: Extreme,

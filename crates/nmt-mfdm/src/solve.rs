@@ -211,7 +211,7 @@ fn results(problem: &TorsionProblem, mesh: &Mesh, solved: Solved) -> TorsionSolu
         torque: j * g_theta,
         twist,
         g_theta,
-        w_t: j * g_theta / extremes.tau_max.value,
+        w_t: (j * g_theta).abs() / extremes.tau_max.value,
         f_max: extremes.f_max,
         tau_max: extremes.tau_max,
         unknowns: solved.unknowns,

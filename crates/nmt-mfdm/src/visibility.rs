@@ -8,6 +8,12 @@ use nmt_geom::{Location, Locator, LoopId, NodeId, Point, RealBoundary, SegmentIn
 /// A pair of nodes is hidden where the middle between them is outside by more than this fraction of max(h_x, h_y).
 const OUTSIDE_FRACTION: f64 = 0.25;
 
+/// Of two boundary nodes with the outside between them, the way along the boundary is at most this many times their
+/// distance.
+///
+/// It is π/2 across a circle; opposite walls of a slit have twice the way to its end, over the width of the slit.
+const MAX_DETOUR: f64 = 1.6;
+
 /// Sine below which a line through a boundary node runs along one of its segments rather than into the outside.
 ///
 /// Segments of a curve turn by their length over its radius, 1e-3 and more; rounding is 1e-9 of the spacing.
@@ -21,6 +27,7 @@ pub struct Visibility {
     n_boundary: usize,
     margin: f64,              // user's length unit
     outside: f64,             // user's length unit
+    places: Vec<Place>,       // of the boundary nodes
     corners: Vec<[Point; 2]>, // at the first node of each segment: directions to the next and to the last node
 }
 
@@ -34,6 +41,7 @@ impl Visibility {
             n_boundary: cloud.n_boundary(),
             margin: SAME_POINT_REL * cloud.size(),
             outside: OUTSIDE_FRACTION * cloud.max_spacing(),
+            places: places(boundary),
             corners: corners(boundary),
         }
     }
@@ -57,7 +65,7 @@ impl Visibility {
             return false;
         }
         let both_on_boundary = centre.index() < self.n_boundary && other.index() < self.n_boundary;
-        !(both_on_boundary && self.middle_is_outside(p, q))
+        !(both_on_boundary && self.outside_between(xy, centre, other))
     }
 
     /// True where the open segment `p q` crosses the real boundary, at a segment or at a node between two of them.
@@ -83,10 +91,43 @@ impl Visibility {
             && segment::distance_to(node, p, q) <= self.margin
     }
 
-    fn middle_is_outside(&self, p: Point, q: Point) -> bool {
+    /// True where the outside between two boundary nodes parts them: the middle lies deep in it, or the way along the
+    /// boundary is a detour.
+    fn outside_between(&self, xy: &[Point], centre: NodeId, other: NodeId) -> bool {
+        let (p, q) = (xy[centre.index()], xy[other.index()]);
         let middle = lerp(p, q, 0.5);
-        self.locator.locate(middle) == Location::Outside && !self.segments.any_within(middle, self.outside)
+        if self.locator.locate(middle) != Location::Outside {
+            return false;
+        }
+        let (a, b) = (self.places[centre.index()], self.places[other.index()]);
+        let along = (a.s - b.s).abs();
+        let way = along.min(a.perimeter - along);
+        let detour = a.ring != b.ring || way > MAX_DETOUR * distance(p, q) + self.margin;
+        detour || !self.segments.any_within(middle, self.outside)
     }
+}
+
+/// Where a boundary node lies along its loop.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    ring: usize,
+    s: f64,         // user's length unit
+    perimeter: f64, // of the loop
+}
+
+fn places(boundary: &RealBoundary) -> Vec<Place> {
+    let mut places = vec![Place::default(); boundary.xy().len()];
+    for ring in 0..boundary.n_loops() {
+        let segments = boundary.loop_segments(LoopId::of(ring));
+        let length = |[a, b]: [Point; 2]| distance(a, b);
+        let perimeter = segments.iter().map(|s| length(boundary.ends(s))).sum();
+        let mut s = 0.0;
+        for segment in segments {
+            places[segment.from.index()] = Place { ring, s, perimeter };
+            s += length(boundary.ends(segment));
+        }
+    }
+    places
 }
 
 /// Directions from the first node of each segment to its neighbours along the loop: the next one and the last one.

@@ -18,6 +18,8 @@
 //! # Ok::<(), nmt::NmtError>(())
 //! ```
 //!
+//! The crates of the stages stand beside it: [`geom`], [`curve`], [`cloud`], [`tri`], [`merge`], [`mfdm`].
+//!
 //! Features: `png` (default) draws PNG beside SVG; `parallel` uses all cores, and changes no number.
 
 mod error;
@@ -30,3 +32,12 @@ pub mod problem;
 pub mod report;
 
 pub use error::NmtError;
+
+pub use {
+    nmt_cloud as cloud, nmt_curve as curve, nmt_geom as geom, nmt_merge as merge, nmt_mfdm as mfdm, nmt_tri as tri,
+};
+
+/// The README's example, so that it compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

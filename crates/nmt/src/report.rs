@@ -12,4 +12,4 @@ pub use model::{
 };
 pub use singular::singular_vertices;
 pub use text::text;
-pub use thickness::{ThinSpot, thinnest};
+pub use thickness::{FEWEST_ACROSS, ThinSpot, thinnest};

@@ -13,6 +13,12 @@ use crate::{ArcTable, CurveError, Expression};
 /// Rounding of a formula moves an end by 1e-15 to 1e-12 of the size, a mistake in it by far more.
 const MISSES_REL: f64 = 1e-9;
 
+/// Rounding of a variable and of the few operations on it, relative.
+const ROUNDING_REL: f64 = 8.0 * f64::EPSILON;
+
+/// The most an end may move by rounding of its variable, relative to the interval: √ROUNDING_REL and some more.
+const SHAKEN_REL: f64 = 1e-6;
+
 /// Intervals between the points at which a formula must be finite; the ends and the middle are among them.
 const FINITE_INTERVALS: usize = 1024;
 
@@ -34,12 +40,27 @@ impl Curve {
         for (end, u, vertex) in [(CurveEnd::Start, 0.0, from), (CurveEnd::Finish, 1.0, to)] {
             let point = self.point(u);
             let gap = distance(point, vertex);
-            if gap.is_nan() || gap > MISSES_REL * size {
+            if gap.is_nan() || gap > MISSES_REL * size + self.shaken(end) {
                 faults.push(CurveError::MissesVertex { end, point, vertex, gap });
             }
         }
         faults.extend(ArcTable::new(self).err());
         faults
+    }
+
+    /// How far an end moves when its variable moves by rounding: nothing to speak of, but √ε where the tangent is
+    /// vertical, as at the ends of `sqrt(0.25 - (x - 1.55)^2)`.
+    fn shaken(&self, end: CurveEnd) -> f64 {
+        let (low, high) = match self {
+            Self::Graph { from_x, to_x, .. } => (*from_x, *to_x),
+            Self::Parametric { from_t, to_t, .. } => (*from_t, *to_t),
+            _ => return 0.0,
+        };
+        let rounding = ROUNDING_REL * low.abs().max(high.abs()) / (high - low).abs();
+        let (u, inner) = if end == CurveEnd::Start { (0.0, rounding) } else { (1.0, 1.0 - rounding) };
+        let moved = distance(self.point(u), self.point(inner));
+        // More than √ε is no rounding of a square root: a jump or a pole at the end.
+        if moved <= SHAKEN_REL * (high - low).abs() { moved } else { 0.0 }
     }
 
     /// Faults of the numbers that define the curve, without a look at its points.
@@ -128,6 +149,15 @@ mod tests {
 
     fn of_graph(text: &str, from_x: f64, to_x: f64, vertices: [Point; 2]) -> Vec<CurveError> {
         graph(text, from_x, to_x).faults(vertices[0], vertices[1], 2.0)
+    }
+
+    #[test]
+    fn a_semicircle_with_decimal_centre_meets_its_vertices_in_spite_of_rounding() {
+        // 2.05 − 1.55 is not 0.5 in binary: the square root makes 1.5e-8 of that.
+        let y = Expression::parse("sqrt(max(0, 0.25 - (x - 1.55)^2))", &["x"]).expect("a formula");
+        let curve = Curve::Graph { y, from_x: 1.05, to_x: 2.05 };
+        assert_eq!(curve.faults([1.05, 0.0], [2.05, 0.0], 3.0), vec![]);
+        assert!(!curve.faults([1.05, 0.0], [2.05, 1e-6], 3.0).is_empty());
     }
 
     #[test]

@@ -177,3 +177,26 @@ fn a_section_has_the_same_stars_in_every_unit() {
         }
     }
 }
+#[test]
+fn the_star_of_a_wall_node_never_reaches_the_other_wall_of_a_slit() {
+    for width in [1e-6, 1e-3, 0.04, 0.3] {
+        for irregularity in [0.0, 0.3] {
+            let mesh = mesh(&slotted(width), &params([41, 21], irregularity, 1));
+            let xy = mesh.xy();
+            let spacing = mesh.cloud().max_spacing();
+            // Two spacings above the slit's bottom, around which the walls see each other along a short way.
+            let beside = |n: usize| xy[n][1] > 0.6 + 2.0 * spacing;
+            for (node, star) in stars(mesh.cloud(), 9).iter().enumerate().filter(|(n, _)| beside(*n)) {
+                for other in star.iter().map(|o| o.index()).filter(|o| beside(*o)) {
+                    assert_eq!(
+                        xy[other][0] < 1.7,
+                        xy[node][0] < 1.7,
+                        "width {width}: {:?} sees {:?}",
+                        xy[node],
+                        xy[other]
+                    );
+                }
+            }
+        }
+    }
+}

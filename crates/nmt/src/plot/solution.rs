@@ -33,7 +33,7 @@ const USUAL_ENDS: f64 = 75.0;
 const PAGE_HEIGHT: f64 = 1300.0;
 /// Two by two panels are kept unless another arrangement draws the section larger by this factor.
 const WORTH_REARRANGING: f64 = 1.2;
-/// A component of the stress smaller than this share of the stress is rounding, hence zero.
+/// A component of the stress smaller than this share of the largest stress is rounding, hence zero.
 const NOISE_REL: f64 = 1.0e-9;
 
 /// One of the four fields.
@@ -160,7 +160,8 @@ pub(super) fn scene(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> 
         let (column, row) = (number % arrangement.columns, number / arrangement.columns);
         let x = corner[0] + column as f64 * (cell[0] + CELL_GAP[0]) + left;
         let y = corner[1] + row as f64 * (cell[1] + CELL_GAP[1]) + head;
-        shapes.push(draw_panel(panel, scale.as_ref(), parts, &axes, [x, y]));
+        let noise = if panel.map == Map::Diverging { NOISE_REL * stress } else { 0.0 };
+        shapes.push(draw_panel(panel, scale.as_ref(), parts, noise, &axes, [x, y]));
     }
     let height = corner[1] + total(1, arrangement.rows) + MARGIN;
     Scene { width: page_width, height: height.ceil(), description: description(caption, "solution"), shapes }
@@ -180,6 +181,7 @@ fn draw_panel(
     panel: &Panel,
     scale: Option<&Scale>,
     parts: &[(Part<'_>, Fields<'_>)],
+    noise: f64,
     axes: &Axes,
     origin: Point,
 ) -> Shape {
@@ -190,7 +192,10 @@ fn draw_panel(
         let points = page_points(part, &|p| axes.view.to_page(origin, p));
         rims.extend(outlines(part, &points));
         if let Some(scale) = scale {
-            shapes.extend(filled_contours(part, &points, (panel.values)(fields), scale));
+            // Rounding about zero would draw its own islands: below the noise, zero is zero.
+            let denoised: Vec<f64> =
+                (panel.values)(fields).iter().map(|&v| if v.abs() < noise { 0.0 } else { v }).collect();
+            shapes.extend(filled_contours(part, &points, &denoised, scale));
         }
     }
     shapes.push(Shape::lines(rims, OUTLINE));
@@ -210,12 +215,17 @@ fn filled_contours(part: &Part<'_>, points: &[Point], values: &[f64], scale: &Sc
     let topology = Topology::new(points, part.triangles, has_value);
     let surface = Surface::new(points, values, &topology);
     let (mut shapes, mut contours) = (Vec::new(), Vec::new());
+    // Where the field is zero over whole triangles, its level 0 is an area, and a line around that means nothing.
+    let is_zero = |node: &u32| values.get(*node as usize) == Some(&0.0);
+    let zero_is_an_area = part.triangles.iter().any(|triangle| triangle.iter().all(is_zero));
     for band in scale.bands() {
         let mut areas = Vec::new();
         for ring in surface.at_least(band.from) {
             let (area, lines) = thinned(&ring);
             areas.extend(area);
-            contours.extend(lines);
+            if !(zero_is_an_area && band.from == 0.0) {
+                contours.extend(lines);
+            }
         }
         shapes.push(Shape::area(areas, band.colour));
     }

@@ -1,6 +1,7 @@
 //! The range of every value, for the file and the options of the command alike.
 
 use super::suggest;
+use nmt_cloud::{BYTES_PER_GRID_POINT, MAX_GRID_POINTS};
 use nmt_mfdm::{Formulation, HoleCondition};
 
 /// Lengths, moduli, twists and torques are at most this, whatever their unit.
@@ -11,13 +12,6 @@ pub(super) const LARGEST: f64 = 1.0e30;
 
 /// And at least this, where they must not be 0.
 pub(super) const SMALLEST: f64 = 1.0e-30;
-
-/// Most grid points N_x·N_y of one cloud.
-const MOST_GRID_POINTS: f64 = 1.0e8;
-
-/// Memory of a solved problem a node, in bytes: 2 triangles, a star of 9 with its 6 rows of coefficients, the system
-/// and its preconditioner.
-const BYTES_PER_NODE: f64 = 1000.0;
 
 /// The orders of the MWLS polynomial that exist.
 const ORDERS: [usize; 1] = [2];
@@ -122,15 +116,15 @@ pub(super) fn nodes([n_x, n_y]: [i128; 2]) -> Result<[usize; 2], Refusal> {
         );
     }
     let points = n_x as f64 * n_y as f64;
-    if points > MOST_GRID_POINTS {
-        let shrink = (MOST_GRID_POINTS / points).sqrt();
+    if points > MAX_GRID_POINTS {
+        let shrink = (MAX_GRID_POINTS / points).sqrt();
         // Each side keeps at least 2 lines, and leaves 2 to the other.
-        let [most_x, most_y] = [n_x, n_y].map(|n| (n as f64 * shrink).floor().clamp(2.0, MOST_GRID_POINTS / 2.0));
+        let [most_x, most_y] = [n_x, n_y].map(|n| (n as f64 * shrink).floor().clamp(2.0, MAX_GRID_POINTS / 2.0));
         return refuse(
             format!(
-                "`nodes` asks for {} grid points, more than {MOST_GRID_POINTS:e}: solving them takes about {} of memory",
+                "`nodes` asks for {} grid points, more than {MAX_GRID_POINTS:e}: solving them takes about {} of memory",
                 show(rounded(points)),
-                memory(points * BYTES_PER_NODE)
+                memory(points * BYTES_PER_GRID_POINT)
             ),
             format!("give fewer, at most nodes = [{}, {}] in this proportion", most_x, most_y),
         );
@@ -139,7 +133,7 @@ pub(super) fn nodes([n_x, n_y]: [i128; 2]) -> Result<[usize; 2], Refusal> {
 }
 
 fn memory(bytes: f64) -> String {
-    if bytes < 1e12 { format!("{:.0} GB", bytes / 1e9) } else { format!("{:.3e} TB", bytes / 1e12) }
+    if bytes < 1e12 { format!("{:.0} GB", bytes / 1e9) } else { format!("{:.0} TB", bytes / 1e12) }
 }
 
 /// The own count of an edge, its ends included.
@@ -147,9 +141,9 @@ pub(super) fn edge_nodes(n: i128) -> Result<usize, Refusal> {
     if n < 2 {
         return refuse(format!("`nodes` of the edge is {n}"), "give at least 2: both its ends count");
     }
-    if n as f64 > MOST_GRID_POINTS {
+    if n as f64 > MAX_GRID_POINTS {
         return refuse(
-            format!("`nodes` of the edge is {n}, more than {MOST_GRID_POINTS:e}"),
+            format!("`nodes` of the edge is {n}, more than {MAX_GRID_POINTS:e}"),
             "give fewer, or leave it out: then the edge follows the density of its contour",
         );
     }
@@ -171,7 +165,7 @@ pub(super) fn star(n: i128, order: usize) -> Result<usize, Refusal> {
         let message = format!("`star` is {n}, fewer nodes than the {monomials} monomials of order {order}");
         return refuse(message, format!("give at least {monomials}, or leave it out for the default"));
     }
-    if n as f64 > MOST_GRID_POINTS {
+    if n as f64 > MAX_GRID_POINTS {
         return refuse(format!("`star` is {n}, larger than any cloud"), "leave it out for the default");
     }
     Ok(n as usize)
@@ -250,7 +244,7 @@ mod tests {
         let Refusal { message, remedy } = nodes([40_000, 10_000]).unwrap_err();
         assert_eq!(
             message,
-            "`nodes` asks for 400000000 grid points, more than 1e8: solving them takes about 400 GB of memory"
+            "`nodes` asks for 400000000 grid points, more than 1e8: solving them takes about 4 TB of memory"
         );
         assert_eq!(remedy, "give fewer, at most nodes = [20000, 5000] in this proportion");
         assert_eq!(nodes([10_000, 10_000]), Ok([10_000, 10_000]));

@@ -10,11 +10,9 @@ pub const FEWEST_ACROSS: usize = 4;
 /// Walls whose directions differ by more than this cosine do not face each other.
 const FACING_COSINE: f64 = -0.9;
 
-/// Walls more nearly parallel than this cosine bound a strip; others may just be the sides of a corner.
-const PARALLEL_COSINE: f64 = -0.999;
-
-/// The sides of a corner are joined within this many widths along the boundary; the walls of a strip are not.
-const CORNER_PATH: f64 = 8.0;
+/// The walls of a wedge meet in its corner: then the way along the boundary from one to the other is what their angle and
+/// distance say, within this fraction. The walls of a strip, tapered or not, are joined by another way.
+const CORNER_PATH_REL: f64 = 0.2;
 
 /// The thinnest part of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +63,9 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
         let same_loop = boundary.loop_of_segment(k) == boundary.loop_of_segment(other);
         let apart = (before[k] - before[other]).abs();
         let path = if same_loop { apart.min(loop_length[k] - apart) } else { f64::INFINITY };
-        let side_of_a_corner = facing > PARALLEL_COSINE && path < CORNER_PATH * width;
+        let sine = cross(direction, sub(ends[other][1], ends[other][0])).abs() / (lengths[k] * lengths[other]);
+        let path_by_corner = width * (1.0 - facing) / sine;
+        let side_of_a_corner = (path / path_by_corner - 1.0).abs() < CORNER_PATH_REL;
         let across = width * rate;
         if facing < FACING_COSINE && !side_of_a_corner && thinnest.is_none_or(|(least, _)| across < least) {
             thinnest = Some((across, along(middle, width / 2.0, normal)));
