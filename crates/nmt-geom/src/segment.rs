@@ -1,6 +1,6 @@
 //! Two points joined: nearest point, distance, crossing, overlap.
 
-use crate::point::{Point, along, cross, distance, dot, sub};
+use crate::point::{Point, along, cross, distance_squared, dot, sub};
 use crate::predicates::side;
 use std::cmp::Ordering;
 
@@ -25,7 +25,8 @@ pub fn nearest_point(p: Point, a: Point, b: Point) -> Point {
 /// ```
 #[inline]
 pub fn distance_to(p: Point, a: Point, b: Point) -> f64 {
-    distance(p, nearest_point(p, a, b))
+    // Not `hypot`: lengths are far from overflow, and this is asked for every star.
+    distance_squared(p, nearest_point(p, a, b)).sqrt()
 }
 
 /// True where `p` is a point of the closed segment `a b`; exact.

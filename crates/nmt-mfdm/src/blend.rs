@@ -6,7 +6,7 @@
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::gauss::{Rule, six_points};
-use crate::mwls::Mwls;
+use crate::mwls::{Mwls, dot};
 use crate::parallel::map_chunks;
 use crate::repair::sound_star;
 use crate::star::StarFinder;
@@ -193,8 +193,7 @@ impl NodalPolynomials {
             for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
                 let [to_b, to_c] = [lambda[(a + 1) % 3], lambda[(a + 2) % 3]];
                 monomials([to_b * b[0] + to_c * c[0], to_b * b[1] + to_c * c[1]], self.order, &mut basis);
-                let value: f64 = coefficients.iter().zip(&basis[..n]).map(|(c, m)| c * m).sum();
-                sum += weight * lambda[a] * value;
+                sum += weight * lambda[a] * dot(coefficients, &basis[..n]);
             }
         }
         mesh.area(triangle) * sum

@@ -85,7 +85,7 @@ impl Mwls {
     fn scale_columns(&mut self, n_columns: usize) {
         for m in 0..n_columns {
             let column = &mut self.a[m * self.n_rows..(m + 1) * self.n_rows];
-            let length = column.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let length = dot(column, column).sqrt();
             self.scale[m] = if length > 0.0 { 1.0 / length } else { 0.0 };
             column.iter_mut().for_each(|v| *v *= self.scale[m]);
         }
@@ -97,7 +97,7 @@ impl Mwls {
         for m in 0..n_columns {
             let (done, rest) = self.a.split_at_mut((m + 1) * n);
             let column = &mut done[m * n..];
-            let length = column[m..].iter().map(|v| v * v).sum::<f64>().sqrt();
+            let length = dot(&column[m..], &column[m..]).sqrt();
             let alpha = if column[m] > 0.0 { -length } else { length };
             self.diagonal[m] = alpha;
             let head = column[m] - alpha;
@@ -207,10 +207,26 @@ impl Mwls {
     }
 }
 
+/// Scalar product in four partial sums, so that it vectorises; the same on every machine.
+#[inline]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let (a, b) = (&a[..n], &b[..n]);
+    let mut sums = [0.0; 4];
+    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a4.zip(b4) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
+}
+
 /// x ← (I − τ v vᵀ) x.
 #[inline]
 fn reflect(v: &[f64], tau: f64, x: &mut [f64]) {
-    let projection = tau * v.iter().zip(x.iter()).map(|(a, b)| a * b).sum::<f64>();
+    let projection = tau * dot(v, x);
     x.iter_mut().zip(v).for_each(|(b, a)| *b -= projection * a);
 }
 

@@ -86,9 +86,9 @@ impl Visibility {
 
     /// True where `node` lies on the segment `p q`, away from its ends.
     fn is_between(&self, node: Point, p: Point, q: Point) -> bool {
-        distance(node, p) > self.margin
+        segment::distance_to(node, p, q) <= self.margin
+            && distance(node, p) > self.margin
             && distance(node, q) > self.margin
-            && segment::distance_to(node, p, q) <= self.margin
     }
 
     /// True where the outside between two boundary nodes parts them: the middle lies deep in it, or the way along the
