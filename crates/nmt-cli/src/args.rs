@@ -34,8 +34,8 @@ pub struct ProblemArgs {
     /// Densities N_x,N_y of every subdomain, instead of the file's
     #[arg(long, value_name = "Nx,Ny", value_parser = counts)]
     pub nodes: Option<[usize; 2]>,
-    /// Seed of the randomisation
-    #[arg(long)]
+    /// Seed of the randomisation, 0 or more
+    #[arg(long, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// Print the report as JSON on stdout
     #[arg(long)]

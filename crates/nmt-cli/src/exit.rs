@@ -15,7 +15,7 @@ pub const USAGE: u8 = 2;
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// The problem is wrong.
-    #[error("the problem file has {} {}", .errors.len(), if .errors.len() == 1 { "fault" } else { "faults" })]
+    #[error("the problem has {} {}", .errors.len(), if .errors.len() == 1 { "fault" } else { "faults" })]
     Problem {
         /// All its faults.
         errors: Vec<ProblemError>,

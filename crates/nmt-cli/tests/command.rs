@@ -222,7 +222,11 @@ fn zero_on_holes_is_named_in_the_report_and_warned_of() {
 #[test]
 fn the_report_as_text_reads_well() {
     let output = nmt(&["solve", &problem("paper-1.toml"), "--nodes", "9,9", "--at", "0.5,0.5", "--at", "9,9"]);
-    insta::assert_snapshot!(text(&output.stdout));
+    // The residual is rounding: its digits are nobody's business.
+    let is_rounding = |line: &&str| line.trim_start().starts_with("linear residual");
+    let lasting: Vec<&str> =
+        std::str::from_utf8(&output.stdout).expect("UTF-8").lines().filter(|l| !is_rounding(l)).collect();
+    insta::assert_snapshot!(lasting.join("\n"));
 }
 
 #[test]

@@ -26,8 +26,8 @@ pub struct Nearest<'a> {
 /// Room for a search, to be used again for the next one.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    found: Vec<(f64, u32)>, // (distance², node)
-    sorted: Vec<f64>,
+    pending: Vec<(f64, u32)>,  // (distance², node) met, not asked about yet
+    accepted: Vec<(f64, u32)>, // by distance
 }
 
 impl<'a> Nearest<'a> {
@@ -68,7 +68,7 @@ impl<'a> Nearest<'a> {
     /// are no more.
     ///
     /// With r the k-th smallest distance, nodes nearer than (1 − 1e-9)·r belong, the rest come from those within
-    /// (1 + 1e-9)·r in order of node number. `accept` is asked once about each node that comes near enough to matter.
+    /// (1 + 1e-9)·r in order of node number. `accept` is asked about nodes in order of distance, until there are enough.
     ///
     /// ```
     /// use nmt_cloud::{Nearest, Scratch};
@@ -87,48 +87,48 @@ impl<'a> Nearest<'a> {
         out: &mut Vec<NodeId>,
     ) {
         out.clear();
-        let found = &mut scratch.found;
-        found.clear();
+        let Scratch { pending, accepted } = scratch;
+        pending.clear();
+        accepted.clear();
         if k == 0 || self.xy.is_empty() {
             return;
         }
         let home = [self.column(p[0], 0), self.column(p[1], 1)];
         let mut ring = 0;
-        let limit = loop {
-            self.visit_ring(home, ring, |node| {
-                if accept(NodeId(node)) {
-                    found.push((distance_squared(p, self.xy[node as usize]), node));
-                }
-            });
+        loop {
+            self.visit_ring(home, ring, |node| pending.push((distance_squared(p, self.xy[node as usize]), node)));
             let complete = self.complete_radius(p, home, ring);
-            if found.len() >= k || complete == f64::INFINITY {
-                scratch.sorted.clear();
-                scratch.sorted.extend(found.iter().map(|(d2, _)| *d2));
-                if scratch.sorted.len() <= k {
-                    if complete == f64::INFINITY {
-                        break f64::INFINITY;
+            // What lies within the complete radius is nearer than all that may still come: it is asked in order.
+            let limit = if complete > 0.0 { complete * complete } else { -1.0 };
+            let is_in = |candidate: &(f64, u32)| candidate.0 <= limit;
+            let n_in = partition(pending, is_in);
+            if accepted.len() + n_in >= k || complete == f64::INFINITY {
+                pending[..n_in].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                for &(d2, node) in &pending[..n_in] {
+                    let enough = accepted.len() >= k && d2 > tied_square(accepted[k - 1].0);
+                    if enough {
+                        break;
                     }
-                } else {
-                    scratch.sorted.select_nth_unstable_by(k - 1, f64::total_cmp);
+                    if accept(NodeId(node)) {
+                        accepted.push((d2, node));
+                    }
                 }
-                let r = scratch.sorted[..k].iter().fold(0.0f64, |r, d2| r.max(*d2)).sqrt();
-                if r * (1.0 + TIE_REL) <= complete {
-                    break r;
+                pending.drain(..n_in);
+                let known = accepted.len() >= k && tied_square(accepted[k - 1].0) <= limit;
+                if known || complete == f64::INFINITY {
+                    break;
                 }
             }
             ring += 1;
-        };
-        if limit == f64::INFINITY {
-            out.extend(found.iter().map(|(_, node)| NodeId(*node)));
-        } else {
-            let (sure, tied) = (limit * (1.0 - TIE_REL), limit * (1.0 + TIE_REL));
-            let (sure, tied) = (sure * sure, tied * tied);
-            out.extend(found.iter().filter(|(d2, _)| *d2 < sure).map(|(_, node)| NodeId(*node)));
-            let mut rest: Vec<u32> =
-                found.iter().filter(|(d2, _)| (sure..=tied).contains(d2)).map(|(_, node)| *node).collect();
-            rest.sort_unstable();
-            out.extend(rest.into_iter().take(k - out.len()).map(NodeId));
         }
+        if accepted.len() > k {
+            // Nodes surely nearer than the k-th belong; the smallest numbers of those at its distance fill up.
+            let sure = (accepted[k - 1].0.sqrt() * (1.0 - TIE_REL)).powi(2);
+            let n_sure = accepted.partition_point(|(d2, _)| *d2 < sure);
+            accepted[n_sure..].sort_unstable_by_key(|(_, node)| *node);
+            accepted.truncate(k);
+        }
+        out.extend(accepted.iter().map(|(_, node)| NodeId(*node)));
         out.sort_unstable();
     }
 
@@ -168,6 +168,23 @@ impl<'a> Nearest<'a> {
         // Cells are found by division, walls by multiplication: leave room for their rounding.
         radius - 1e-12 * (self.cell[0] + self.cell[1])
     }
+}
+
+/// The square of (1 + 1e-9) times a distance, from its square.
+fn tied_square(d2: f64) -> f64 {
+    (d2.sqrt() * (1.0 + TIE_REL)).powi(2)
+}
+
+/// Brings the elements that hold to the front; returns how many they are.
+fn partition<T: Copy>(list: &mut [T], holds: impl Fn(&T) -> bool) -> usize {
+    let mut n = 0;
+    for k in 0..list.len() {
+        if holds(&list[k]) {
+            list.swap(n, k);
+            n += 1;
+        }
+    }
+    n
 }
 
 #[cfg(test)]

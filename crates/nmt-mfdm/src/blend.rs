@@ -5,13 +5,14 @@
 //! of nodal polynomials, as in the FE–meshfree methods of Rajendran and Zhang, 2007).
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
+use crate::error::MfdmError;
 use crate::gauss::{Rule, six_points};
 use crate::mwls::{Mwls, dot};
 use crate::parallel::map_chunks;
 use crate::repair::sound_star;
 use crate::star::StarFinder;
 use crate::stencils::{StarParams, StarReport};
-use crate::visibility::Visibility;
+use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
@@ -33,32 +34,46 @@ pub struct FieldValue {
 pub struct NodalPolynomials {
     order: usize,
     coefficients: Vec<f64>, // Taylor coefficients in scaled coordinates, shape (n_nodes, n_monomials)
-    radii: Vec<f64>,        // user's length unit
+    radii: Vec<f64>,        // in stretched coordinates, user's length unit
+    metric: Metric,
     report: StarReport,
 }
 
 impl NodalPolynomials {
     /// Fits a polynomial of `params.order` to the nodal `values` about every node, from its own star.
     ///
-    /// A star that carries none of the order gives one of a lower order, at least a constant; the report tells.
-    pub fn fit(mesh: &Mesh, visibility: &Visibility, nearest: &Nearest, params: StarParams, values: &[f64]) -> Self {
+    /// A star that carries none of the order gives one of a lower order, at least a plane; the report tells.
+    ///
+    /// # Errors
+    /// [`MfdmError::PoorStar`] where a node sees too few others for a plane.
+    pub fn fit(
+        surroundings: &Surroundings,
+        nearest: &Nearest,
+        params: StarParams,
+        values: &[f64],
+    ) -> Result<Self, MfdmError> {
         struct Part {
             coefficients: Vec<f64>,
             radii: Vec<f64>,
             report: StarReport,
+            poor: Option<MfdmError>,
         }
         let n = n_monomials(params.order);
-        let xy = mesh.xy();
-        let pieces = map_chunks(0..xy.len(), |piece| {
-            let mut finder = StarFinder::new(xy, nearest, visibility);
+        let places = surroundings.stretched();
+        let pieces = map_chunks(0..places.len(), |piece| {
+            let mut finder = StarFinder::new(surroundings, nearest);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-            let mut part = Part { coefficients: Vec::new(), radii: Vec::new(), report: StarReport::default() };
+            let mut part =
+                Part { coefficients: Vec::new(), radii: Vec::new(), report: StarReport::default(), poor: None };
             for node in piece {
                 let id = NodeId::of(node);
-                let outcome = sound_star(&mut finder, &mut mwls, xy, id, params.order, params.size, &mut star);
+                let outcome = sound_star(&mut finder, &mut mwls, places, id, params.order, params.size, &mut star);
                 let mut fitted = [0.0; MAX_MONOMIALS];
                 fitted[0] = values[node];
-                if outcome.order > 0 {
+                if outcome.order == 0 {
+                    let (at, tried) = (surroundings.xy()[node], star.len());
+                    part.poor = part.poor.or(Some(MfdmError::PoorStar { node, at, order: 1, tried }));
+                } else {
                     mwls.fit(|k| values[star[k].index()], &mut fitted);
                 }
                 part.coefficients.extend(&fitted[..n]);
@@ -69,11 +84,15 @@ impl NodalPolynomials {
         });
         let mut all = Self {
             order: params.order,
-            coefficients: Vec::with_capacity(n * xy.len()),
-            radii: Vec::with_capacity(xy.len()),
+            coefficients: Vec::with_capacity(n * places.len()),
+            radii: Vec::with_capacity(places.len()),
+            metric: surroundings.metric(),
             report: StarReport { size: params.size, ..StarReport::default() },
         };
         for part in pieces {
+            if let Some(error) = part.poor {
+                return Err(error);
+            }
             all.coefficients.extend(part.coefficients);
             all.radii.extend(part.radii);
             all.report.hidden_nodes_skipped += part.report.hidden_nodes_skipped;
@@ -81,7 +100,7 @@ impl NodalPolynomials {
             all.report.order_lowered += part.report.order_lowered;
             all.report.worst_condition = all.report.worst_condition.max(part.report.worst_condition);
         }
-        all
+        Ok(all)
     }
 
     /// Order of the polynomials.
@@ -105,11 +124,16 @@ impl NodalPolynomials {
         &self.coefficients[node.index() * n..(node.index() + 1) * n]
     }
 
+    /// Scaled coordinates by user's, along x and y: stretch over radius.
+    fn slopes(&self, node: NodeId) -> [f64; 2] {
+        self.metric.stretch().map(|stretch| stretch / self.radii[node.index()])
+    }
+
     /// Value and derivatives of a node's own polynomial at that node.
     pub fn at_node(&self, node: NodeId) -> FieldValue {
-        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
-        let laplacian = if self.order >= 2 { (c[row(2, 0)] + c[row(0, 2)]) / (r * r) } else { 0.0 };
-        FieldValue { value: c[0], gradient: [c[row(1, 0)] / r, c[row(0, 1)] / r], laplacian }
+        let (c, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
+        let laplacian = if self.order >= 2 { c[row(2, 0)] * s_x * s_x + c[row(0, 2)] * s_y * s_y } else { 0.0 };
+        FieldValue { value: c[0], gradient: [c[row(1, 0)] * s_x, c[row(0, 1)] * s_y], laplacian }
     }
 
     /// [∂²/∂x², ∂²/∂x∂y, ∂²/∂y²] of a node's own polynomial at that node.
@@ -117,14 +141,14 @@ impl NodalPolynomials {
         if self.order < 2 {
             return [0.0; 3];
         }
-        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
-        [row(2, 0), row(1, 1), row(0, 2)].map(|m| c[m] / (r * r))
+        let (c, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
+        [c[row(2, 0)] * s_x * s_x, c[row(1, 1)] * s_x * s_y, c[row(0, 2)] * s_y * s_y]
     }
 
     /// Value and derivatives at `p` of the polynomial of `node`, which lies at `centre`.
     pub fn polynomial(&self, node: NodeId, centre: Point, p: Point) -> FieldValue {
-        let (c, r) = (self.coefficients(node), self.radii[node.index()]);
-        let scaled = [(p[0] - centre[0]) / r, (p[1] - centre[1]) / r];
+        let (c, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
+        let scaled = [(p[0] - centre[0]) * s_x, (p[1] - centre[1]) * s_y];
         let mut basis = [0.0; MAX_MONOMIALS];
         monomials(scaled, self.order, &mut basis);
         // The derivative of hᵃkᵇ/(a! b!) along h is the monomial (a − 1, b): a shift of the coefficients.
@@ -138,8 +162,8 @@ impl NodalPolynomials {
             }
             sum
         };
-        let laplacian = if self.order >= 2 { (shifted(2, 0) + shifted(0, 2)) / (r * r) } else { 0.0 };
-        FieldValue { value: shifted(0, 0), gradient: [shifted(1, 0) / r, shifted(0, 1) / r], laplacian }
+        let laplacian = if self.order >= 2 { shifted(2, 0) * s_x * s_x + shifted(0, 2) * s_y * s_y } else { 0.0 };
+        FieldValue { value: shifted(0, 0), gradient: [shifted(1, 0) * s_x, shifted(0, 1) * s_y], laplacian }
     }
 
     /// Value and derivatives of the blend at `p` in `triangle`.
@@ -187,8 +211,9 @@ impl NodalPolynomials {
         let n = n_monomials(self.order);
         let mut sum = 0.0;
         for (a, &node) in mesh.tri_nodes()[triangle.index()].iter().enumerate() {
-            let (coefficients, radius) = (self.coefficients(node), self.radii[node.index()]);
-            let [b, c] = [(a + 1) % 3, (a + 2) % 3].map(|k| sub(corners[k], corners[a]).map(|v| v / radius));
+            let (coefficients, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
+            let scaled = |offset: Point| [offset[0] * s_x, offset[1] * s_y];
+            let [b, c] = [(a + 1) % 3, (a + 2) % 3].map(|k| scaled(sub(corners[k], corners[a])));
             let mut basis = [0.0; MAX_MONOMIALS];
             for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
                 let [to_b, to_c] = [lambda[(a + 1) % 3], lambda[(a + 2) % 3]];

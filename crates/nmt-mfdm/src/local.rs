@@ -25,9 +25,10 @@ pub(crate) fn assemble(mesh: &Mesh, stencils: &Stencils, roles: &Roles) -> Linea
 fn laplacian_row(stencils: &Stencils, roles: &Roles, node: NodeId) -> SplitRow {
     let stencil = stencils.of(node);
     let (xx, yy) = (stencil.row(row(2, 0)), stencil.row(row(0, 2)));
+    let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch * stretch);
     let mut split = SplitRow::default();
     for (k, &other) in stencil.nodes.iter().enumerate() {
-        split.add(roles.of(other), -(xx[k] + yy[k]));
+        split.add(roles.of(other), -(xx[k] * s_x + yy[k] * s_y));
     }
     split
 }

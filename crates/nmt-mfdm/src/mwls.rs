@@ -12,6 +12,10 @@ use nmt_geom::point::{distance_squared, sub};
 /// node of a regular grid, which do not determine a cubic, come to 10¹⁵. At 10⁶ ten correct digits are left.
 pub const MAX_CONDITION: f64 = 1.0e6;
 
+/// Nodes within this fraction of their extent of a line along an axis lie on it: rounding is 1e-15, the flattest useful
+/// star 1e-2.
+const ON_ONE_LINE_REL: f64 = 1.0e-6;
+
 /// The least-squares system of one star, factorised; to be used again for the next star.
 ///
 /// The polynomial meets the centre's value exactly and minimises Σ w (P(x_i) − u_i)² over the other nodes \[D11\].
@@ -76,10 +80,23 @@ impl Mwls {
                 self.a[m * self.n_rows + i] = root * basis[m + 1];
             }
         }
+        if self.is_on_one_line() {
+            return self.condition;
+        }
         self.scale_columns(n_columns);
         self.householder(n_columns);
         self.condition = self.condition_of_r(n_columns);
         self.condition
+    }
+
+    /// True where all nodes lie on one line along an axis, up to rounding: scaling the columns would make a coordinate of
+    /// that rounding.
+    fn is_on_one_line(&self) -> bool {
+        let square = |m: usize| {
+            dot(&self.a[m * self.n_rows..(m + 1) * self.n_rows], &self.a[m * self.n_rows..(m + 1) * self.n_rows])
+        };
+        let (h, k) = (square(0), square(1));
+        h.min(k) <= ON_ONE_LINE_REL * ON_ONE_LINE_REL * h.max(k)
     }
 
     fn scale_columns(&mut self, n_columns: usize) {

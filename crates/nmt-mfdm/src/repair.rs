@@ -13,11 +13,15 @@ use nmt_geom::{NodeId, Point};
 /// 1e-5 with 10 nodes in it. Stars of order 3 lie between 100 and 350.
 const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
 
-/// A star grows by its size over this at a time.
-const ENLARGEMENT_STEPS: usize = 8;
+/// A star is enlarged to these parts of its size, in eighths, before the order is lowered.
+const ENLARGEMENTS: [usize; 6] = [8, 9, 10, 12, 16, 24];
 
-/// A star is enlarged to at most this many times its size before the order is lowered.
-const MAX_ENLARGEMENT: usize = 2;
+/// The sizes tried for a polynomial of `order`; a plane, the least there is, may take every visible node.
+fn sizes(first: usize, order: usize) -> impl Iterator<Item = usize> {
+    let ordinary = ENLARGEMENTS.into_iter().map(move |eighths| (first * eighths).div_ceil(8));
+    let further = (3..usize::BITS - 8).map(move |doublings| first << doublings).take_while(|size| *size < 1 << 40);
+    ordinary.chain(further.filter(move |_| order == 1))
+}
 
 /// What one node's star came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,11 +37,11 @@ pub struct StarOutcome {
 }
 
 /// Finds the star of `node` that carries a polynomial of `order`, or of the highest lower one; its nodes into `star`,
-/// its factorised system into `mwls`.
+/// its factorised system into `mwls`. `places` are the stretched coordinates of the nodes.
 pub(crate) fn sound_star(
     finder: &mut StarFinder,
     mwls: &mut Mwls,
-    xy: &[Point],
+    places: &[Point],
     node: NodeId,
     order: usize,
     size: usize,
@@ -45,11 +49,10 @@ pub(crate) fn sound_star(
 ) -> StarOutcome {
     for lower in (1..=order).rev() {
         let first_size = if lower == order { size } else { default_star(lower) }.max(n_monomials(lower));
-        let sizes = first_size..=first_size * MAX_ENLARGEMENT;
         let mut best: Option<Candidate> = None;
         let mut last_found = 0;
-        for wanted in sizes.step_by((first_size / ENLARGEMENT_STEPS).max(1)) {
-            let candidate = try_star(finder, mwls, xy, node, lower, wanted, star);
+        for wanted in sizes(first_size, lower) {
+            let candidate = try_star(finder, mwls, places, node, lower, wanted, star);
             if star.len() == last_found {
                 break; // no more nodes are visible
             }
@@ -64,7 +67,7 @@ pub(crate) fn sound_star(
         if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
             // The star of the last try may not be the best one: find that again.
             let Candidate { wanted, hidden, condition } = best;
-            try_star(finder, mwls, xy, node, lower, wanted, star);
+            try_star(finder, mwls, places, node, lower, wanted, star);
             return StarOutcome { order: lower, enlarged: wanted > first_size, hidden, condition };
         }
     }
@@ -82,7 +85,7 @@ struct Candidate {
 fn try_star(
     finder: &mut StarFinder,
     mwls: &mut Mwls,
-    xy: &[Point],
+    places: &[Point],
     node: NodeId,
     order: usize,
     wanted: usize,
@@ -90,7 +93,7 @@ fn try_star(
 ) -> Candidate {
     let hidden = finder.find(node, wanted, star);
     let condition = match star.iter().position(|n| *n == node) {
-        Some(centre) => mwls.factorise(star.iter().map(|n| xy[n.index()]), xy[node.index()], centre, order),
+        Some(centre) => mwls.factorise(star.iter().map(|n| places[n.index()]), places[node.index()], centre, order),
         None => f64::INFINITY,
     };
     Candidate { wanted, hidden, condition }

@@ -10,11 +10,10 @@ use crate::solution::{HoleResult, TorsionSolution};
 use crate::solver::direct;
 use crate::star::default_star;
 use crate::stencils::{StarParams, StarReport, Stencils};
+use crate::surroundings::Surroundings;
 use crate::system::{FreeHoles, LinearSystem, Role, Roles};
-use crate::visibility::Visibility;
 use crate::{local, variational};
-use nmt_cloud::Nearest;
-use nmt_geom::NodeId;
+use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, NodeTris};
 
 /// The order of the MWLS polynomials that the equations are made with.
@@ -28,7 +27,8 @@ pub const RECOVERY_ORDER: usize = ORDER + 1;
 pub struct SolveParams {
     /// Variational by default.
     pub formulation: Formulation,
-    /// Nodes in a star, the centre included; 9 by default, at least 6.
+    /// Nodes in a star, the centre included; at least 6. By default 9, and up to four times as many where the spacings
+    /// are in a ratio above 2.
     pub star: Option<usize>,
 }
 
@@ -86,9 +86,10 @@ pub fn solve_observed(
     ended: &mut dyn FnMut(Stage),
 ) -> Result<TorsionSolution, MfdmError> {
     problem.check()?;
-    let stars = star_params(mesh, params)?;
-    let nearest = Nearest::new(mesh.xy());
-    let visibility = Visibility::new(mesh.cloud());
+    let surroundings = Surroundings::new(mesh.cloud());
+    let larger = surroundings.metric().star_factor();
+    let stars = star_params(mesh, params, larger)?;
+    let nearest = surroundings.nearest();
     let free_holes = if problem.holes == HoleCondition::Circulation { FreeHoles::Yes } else { FreeHoles::No };
     let roles = Roles::new(mesh, free_holes);
 
@@ -98,7 +99,8 @@ pub fn solve_observed(
         Formulation::Local if roles.n_holes == 0 => mesh.cloud().n_boundary()..n_nodes,
         Formulation::Local | Formulation::Variational => 0..n_nodes,
     };
-    let stencils = Stencils::new(mesh.cloud(), &visibility, &nearest, stars, range);
+    let stencils = Stencils::new(&surroundings, &nearest, stars, range.clone());
+    stencils.require(range, mesh.xy(), 1)?;
     if params.formulation == Formulation::Local {
         stencils.require(mesh.cloud().n_boundary()..n_nodes, mesh.xy(), ORDER)?;
     }
@@ -106,7 +108,7 @@ pub fn solve_observed(
     ended(Stage::Stencils);
 
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
-    let mut system = match params.formulation {
+    let system = match params.formulation {
         Formulation::Local => local::assemble(mesh, &stencils, &roles),
         Formulation::Variational => variational::assemble(mesh, &stencils, &node_tris, &roles),
     };
@@ -115,26 +117,29 @@ pub fn solve_observed(
     drop(node_tris);
     ended(Stage::Assemble);
 
-    let Nodal { values, constants, residual } = solve_system(&mut system, &equations, &roles, n_nodes)?;
+    let Nodal { values, constants, residual } =
+        solve_system(&system, &mesh.xy()[mesh.cloud().n_boundary()..], &equations, &roles, n_nodes)?;
     drop(system);
     ended(Stage::Solve);
 
-    let recovery = StarParams { order: RECOVERY_ORDER, size: default_star(RECOVERY_ORDER) };
-    let field = NodalPolynomials::fit(mesh, &visibility, &nearest, recovery, &values);
+    let recovery = StarParams { order: RECOVERY_ORDER, size: (default_star(RECOVERY_ORDER) as f64 * larger) as usize };
+    let field = NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?;
     let unknowns = roles.n_unknowns + roles.n_holes;
     let solution = results(problem, mesh, Solved { values, constants, field, residual, unknowns, stars: star_report });
     ended(Stage::Post);
-    Ok(solution)
+    // A number that is none is an error, not a result.
+    let numbers = [solution.j, solution.torque, solution.w_t, solution.f_max.value, solution.tau_max.value];
+    if numbers.iter().all(|v| v.is_finite()) { Ok(solution) } else { Err(MfdmError::Singular { n: unknowns }) }
 }
 
-fn star_params(mesh: &Mesh, params: &SolveParams) -> Result<StarParams, MfdmError> {
+fn star_params(mesh: &Mesh, params: &SolveParams, larger: f64) -> Result<StarParams, MfdmError> {
     let (n_nodes, least) = (mesh.cloud().n_nodes(), n_monomials(ORDER));
     let size = match params.star {
         Some(star) if star < least || star > n_nodes => {
             return Err(MfdmError::StarSize { star, order: ORDER, least, n_nodes });
         }
         Some(star) => star,
-        None => default_star(ORDER).min(n_nodes),
+        None => ((default_star(ORDER) as f64 * larger) as usize).min(n_nodes),
     };
     Ok(StarParams { order: ORDER, size })
 }
@@ -148,7 +153,8 @@ struct Nodal {
 
 /// F = F_0 + Σ c_k F_k with one factorisation; the holes' equations give the c_k.
 fn solve_system(
-    system: &mut LinearSystem,
+    system: &LinearSystem,
+    xy: &[Point],
     equations: &[HoleEquation],
     roles: &Roles,
     n_nodes: usize,
@@ -159,7 +165,7 @@ fn solve_system(
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
         right_sides.push(b);
     }
-    let direct::Solutions { x, residual } = direct::solve(system, &right_sides)?;
+    let direct::Solutions { x, residual } = direct::solve(system, xy, &right_sides)?;
     let along = |equation: &HoleEquation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };

@@ -6,8 +6,8 @@ use crate::mwls::Mwls;
 use crate::parallel::map_chunks;
 use crate::repair::{StarOutcome, sound_star};
 use crate::star::StarFinder;
-use crate::visibility::Visibility;
-use nmt_cloud::{Cloud, Nearest};
+use crate::surroundings::{Metric, Surroundings};
+use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use std::ops::Range;
 
@@ -48,6 +48,7 @@ impl StarReport {
 #[derive(Clone, Debug)]
 pub struct Stencils {
     order: usize,
+    metric: Metric,
     first: usize,       // number of the first node
     starts: Vec<usize>, // first star entry of each node, shape (n + 1,)
     nodes: Vec<NodeId>, // star after star, each ascending
@@ -62,14 +63,14 @@ pub struct Stencils {
 pub struct Stencil<'a> {
     /// The star's nodes, ascending.
     pub nodes: &'a [NodeId],
-    /// Radius of the star, user's length unit.
+    /// Radius of the star in stretched coordinates, user's length unit.
     pub radius: f64,
     rows: &'a [f64],
 }
 
 impl<'a> Stencil<'a> {
     /// What each node contributes to derivative `m` (see [`crate::row`]; not 0, the value itself) at the centre in
-    /// scaled coordinates: divide by radius^(a+b) for ∂ᵃ⁺ᵇ/∂xᵃ∂yᵇ.
+    /// scaled coordinates: multiply by (stretch_x/radius)^a·(stretch_y/radius)^b for ∂ᵃ⁺ᵇ/∂xᵃ∂yᵇ.
     pub fn row(&self, m: usize) -> &'a [f64] {
         &self.rows[(m - 1) * self.nodes.len()..m * self.nodes.len()]
     }
@@ -80,23 +81,17 @@ impl Stencils {
     ///
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
-    pub fn new(
-        cloud: &Cloud,
-        visibility: &Visibility,
-        nearest: &Nearest,
-        params: StarParams,
-        range: Range<usize>,
-    ) -> Self {
+    pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
         let n_rows = n_monomials(params.order) - 1;
-        let xy = cloud.xy();
+        let (places, metric) = (surroundings.stretched(), surroundings.metric());
         let first = range.start;
         let pieces = map_chunks(range, |piece| {
-            let mut finder = StarFinder::new(xy, nearest, visibility);
+            let mut finder = StarFinder::new(surroundings, nearest);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-            let mut part = Self::empty(params, piece.start);
+            let mut part = Self::empty(params, metric, piece.start);
             for node in piece {
                 let outcome =
-                    sound_star(&mut finder, &mut mwls, xy, NodeId::of(node), params.order, params.size, &mut star);
+                    sound_star(&mut finder, &mut mwls, places, NodeId::of(node), params.order, params.size, &mut star);
                 let before = part.rows.len();
                 if outcome.order > 0 {
                     mwls.rows(&mut part.rows);
@@ -109,7 +104,7 @@ impl Stencils {
             }
             part
         });
-        let mut all = Self::empty(params, first);
+        let mut all = Self::empty(params, metric, first);
         for part in pieces {
             let offset = all.nodes.len();
             all.starts.extend(part.starts[1..].iter().map(|start| start + offset));
@@ -135,9 +130,10 @@ impl Stencils {
         }
     }
 
-    fn empty(params: StarParams, first: usize) -> Self {
+    fn empty(params: StarParams, metric: Metric, first: usize) -> Self {
         Self {
             order: params.order,
+            metric,
             first,
             starts: vec![0],
             nodes: Vec::new(),
@@ -146,6 +142,11 @@ impl Stencils {
             outcomes: Vec::new(),
             size: params.size,
         }
+    }
+
+    /// The metric of their coordinates.
+    pub fn metric(&self) -> Metric {
+        self.metric
     }
 
     /// Order of the polynomials.

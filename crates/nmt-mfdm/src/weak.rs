@@ -60,6 +60,7 @@ impl<'a> WeakForm<'a> {
         let corners = self.mesh.corners(triangle);
         let node = self.mesh.tri_nodes()[triangle.index()][corner];
         let radius = self.stencils.of(node).radius;
+        let [s_x, s_y] = self.stencils.metric().stretch().map(|stretch| stretch / radius);
         let order = self.stencils.order();
         let area = self.mesh.area(triangle);
         let lambda_slope = barycentric_gradients(corners)[corner];
@@ -73,15 +74,14 @@ impl<'a> WeakForm<'a> {
         let moments = &mut gathered.moments[slot];
         let mut basis = [0.0; MAX_MONOMIALS];
         for (lambda, weight) in self.rule.points.iter().zip(&self.rule.weights) {
-            let offset =
-                |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>() / radius;
-            monomials([offset(0), offset(1)], order, &mut basis);
-            let (value_part, slope_part) = (weight * area * along, weight * area * lambda[corner] / radius);
+            let offset = |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>();
+            monomials([offset(0) * s_x, offset(1) * s_y], order, &mut basis);
+            let (value_part, slope_part) = (weight * area * along, weight * area * lambda[corner]);
             for degree in 0..=order {
                 for b in 0..=degree {
                     let a = degree - b;
-                    let by_x = if a > 0 { slope[0] * basis[row(a - 1, b)] } else { 0.0 };
-                    let by_y = if b > 0 { slope[1] * basis[row(a, b - 1)] } else { 0.0 };
+                    let by_x = if a > 0 { slope[0] * s_x * basis[row(a - 1, b)] } else { 0.0 };
+                    let by_y = if b > 0 { slope[1] * s_y * basis[row(a, b - 1)] } else { 0.0 };
                     moments[row(a, b)] += value_part * basis[row(a, b)] + slope_part * (by_x + by_y);
                 }
             }

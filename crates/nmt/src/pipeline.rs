@@ -122,8 +122,8 @@ fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> c
         CloudError::BoundaryCrosses { at: p, remedy } => at(
             &subdomain.nodes_place,
             format!(
-                "the polygon through the boundary nodes crosses itself near ({:.6}, {:.6}): too few nodes for the curves",
-                p[0], p[1]
+                "the polygon through the boundary nodes crosses itself near {}: too few nodes for the curves",
+                crate::report::place(p)
             ),
             remedy,
         ),
@@ -142,7 +142,7 @@ fn star_fault(problem: &Problem, part: &CloudPart) -> Option<crate::problem::Pro
     let n_nodes = part.cloud.n_nodes();
     (star > n_nodes).then(|| {
         let message = format!("star = {star} is larger than the cloud of subdomain \"{}\", {n_nodes} nodes", part.name);
-        problem.source.error(place, "solve", message, format!("choose at most {n_nodes}, or more nodes"))
+        problem.source.error(place, "[solve]", message, format!("choose at most {n_nodes}, or more nodes"))
     })
 }
 

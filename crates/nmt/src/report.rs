@@ -11,5 +11,5 @@ pub use model::{
     SubdomainReport, Totals,
 };
 pub use singular::singular_vertices;
-pub use text::text;
+pub use text::{place, text};
 pub use thickness::{FEWEST_ACROSS, ThinSpot, thinnest};

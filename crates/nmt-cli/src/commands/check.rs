@@ -12,5 +12,5 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let problem = load(&args.problem, &args.problem.overrides_with(&args.keys))?;
     let parts = clouds(&problem, &mut |k, stage| watch.lap(k, stage)).map_err(|e| Failure::of(e, &problem.source))?;
-    finish(Report::of_clouds(&problem, &parts), &watch, args.problem.json, None)
+    finish(Report::of_check(&problem, &parts), &watch, args.problem.json, None)
 }

@@ -1,11 +1,19 @@
 //! Sparse LU factorisation, and the small dense system of the holes: the only file that names faer.
 
 use crate::error::MfdmError;
+use crate::solver::ordering::{ColumnRows, nested_dissection};
 use crate::system::LinearSystem;
-use faer::Mat;
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::solvers::Solve as _;
-use faer::sparse::linalg::LuError;
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use faer::perm::PermRef;
+use faer::sparse::linalg::lu::supernodal::{
+    SupernodalLu, factorize_supernodal_numeric_lu, factorize_supernodal_numeric_lu_scratch,
+    factorize_supernodal_symbolic_lu, factorize_supernodal_symbolic_lu_scratch, solve_in_place_scratch,
+};
+use faer::sparse::linalg::{LuError, qr};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, Par};
+use nmt_geom::Point;
 
 /// Largest relative residual ‖b − Ax‖/‖b‖ that is accepted.
 ///
@@ -24,21 +32,15 @@ pub(crate) struct Solutions {
 
 /// Solves A·x = b for every right side with one factorisation, each refined once and checked by its true residual.
 ///
+/// `xy` are the places of the unknowns, shape (n, 2): they give the order of elimination.
+///
 /// # Errors
 /// [`MfdmError::Singular`], [`MfdmError::Memory`], or [`MfdmError::Residual`] where a solution does not satisfy its
 /// equations.
-pub(crate) fn solve(system: &LinearSystem, right_sides: &[Vec<f64>]) -> Result<Solutions, MfdmError> {
+pub(crate) fn solve(system: &LinearSystem, xy: &[Point], right_sides: &[Vec<f64>]) -> Result<Solutions, MfdmError> {
     let n = system.n();
-    let matrix = by_columns(system).ok_or(MfdmError::Memory { n })?;
-    let factors = matrix.sp_lu().map_err(|error| match error {
-        LuError::SymbolicSingular { .. } => MfdmError::Singular { n },
-        LuError::Generic(_) => MfdmError::Memory { n },
-    })?;
-    let solve_once = |b: &[f64]| -> Vec<f64> {
-        let mut x = Mat::from_fn(n, 1, |i, _| b[i]);
-        factors.solve_in_place(x.as_mut());
-        (0..n).map(|i| x[(i, 0)]).collect()
-    };
+    let factors = Factors::new(system, xy)?;
+    let solve_once = |b: &[f64]| factors.solve(b);
     let mut solutions = Solutions { x: Vec::with_capacity(right_sides.len()), residual: 0.0 };
     for b in right_sides {
         let mut x = solve_once(b);
@@ -73,8 +75,124 @@ fn relative_residual(system: &LinearSystem, b: &[f64], x: &[f64]) -> f64 {
     if right == 0.0 && left == 0.0 { 0.0 } else { left / right }
 }
 
-/// The matrix by columns: rows are taken in order, so that each column's rows ascend.
-fn by_columns(system: &LinearSystem) -> Option<SparseColMat<usize, f64>> {
+/// P·A·Q = L·U with row pivoting.
+struct Factors {
+    lu: SupernodalLu<usize, f64>,
+    row_order: Order,
+    column_order: Order,
+}
+
+/// A permutation: `forward[k]` comes to place k, `inverse` is its inverse.
+struct Order {
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+}
+
+impl Order {
+    fn new(forward: Vec<usize>) -> Self {
+        let mut inverse = vec![0; forward.len()];
+        forward.iter().enumerate().for_each(|(place, &k)| inverse[k] = place);
+        Self { forward, inverse }
+    }
+
+    fn as_ref(&self) -> PermRef<'_, usize> {
+        PermRef::new_checked(&self.forward, &self.inverse, self.forward.len())
+    }
+}
+
+impl Factors {
+    fn new(system: &LinearSystem, xy: &[Point]) -> Result<Self, MfdmError> {
+        let n = system.n();
+        let out_of_memory = |_| MfdmError::Memory { n };
+        let ByColumns { starts, rows, values } = by_columns(system);
+        let columns = system.columns.iter().map(|&c| c as usize).collect::<Vec<_>>();
+        let a = SparseColMatRef::new(SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows), &values);
+        // The rows of A are the columns of its transpose.
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &system.row_starts, None, &columns);
+        let transpose = SparseColMatRef::new(pattern, &system.values);
+
+        let dissected = Order::new(nested_dissection(system, &ColumnRows { starts: &starts, rows: &rows }, xy));
+        let workspace = StackReq::new::<usize>(8 * n)
+            .or(factorize_supernodal_symbolic_lu_scratch::<usize>(n, n))
+            .or(qr::column_counts_aat_scratch::<usize>(n, n));
+        let mut memory = MemBuffer::try_new(workspace).map_err(out_of_memory)?;
+        let stack = MemStack::new(&mut memory);
+        let (mut etree, mut post) = (vec![0usize; n], vec![0usize; n]);
+        let tree = qr::col_etree(a.symbolic(), Some(dissected.as_ref()), &mut etree, stack);
+        qr::postorder(&mut post, tree, stack);
+        // Supernodes are runs of columns: those of one branch must stand together.
+        let column_order = Order::new(post.iter().map(|&place| dissected.forward[place]).collect());
+        let (mut counts, mut least_column) = (vec![0usize; n], vec![0usize; n]);
+        let tree = qr::col_etree(a.symbolic(), Some(column_order.as_ref()), &mut etree, stack);
+        qr::postorder(&mut post, tree, stack);
+        qr::column_counts_ata(
+            &mut counts,
+            &mut least_column,
+            transpose.symbolic(),
+            Some(column_order.as_ref()),
+            tree,
+            &post,
+            stack,
+        );
+        let symbolic = factorize_supernodal_symbolic_lu(
+            a.symbolic(),
+            Some(column_order.as_ref()),
+            &least_column,
+            tree,
+            &counts,
+            stack,
+            Default::default(),
+        )
+        .map_err(|_| MfdmError::Memory { n })?;
+
+        let workspace = factorize_supernodal_numeric_lu_scratch::<usize, f64>(&symbolic, Default::default());
+        let mut memory = MemBuffer::try_new(workspace).map_err(out_of_memory)?;
+        let mut row_order = Order { forward: vec![0; n], inverse: vec![0; n] };
+        let mut lu = SupernodalLu::new();
+        factorize_supernodal_numeric_lu(
+            &mut row_order.forward,
+            &mut row_order.inverse,
+            &mut lu,
+            a,
+            transpose,
+            column_order.as_ref(),
+            &symbolic,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        )
+        .map_err(|error| match error {
+            LuError::SymbolicSingular { .. } => MfdmError::Singular { n },
+            LuError::Generic(_) => MfdmError::Memory { n },
+        })?;
+        Ok(Self { lu, row_order, column_order })
+    }
+
+    fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let n = b.len();
+        let mut x = Mat::from_fn(n, 1, |i, _| b[i]);
+        let mut memory = MemBuffer::new(solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
+        self.lu.solve_in_place_with_conj(
+            self.row_order.as_ref(),
+            self.column_order.as_ref(),
+            Conj::No,
+            x.as_mut(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        (0..n).map(|i| x[(i, 0)]).collect()
+    }
+}
+
+/// The matrix by columns.
+struct ByColumns {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+/// Rows are taken in order, so that each column's rows ascend.
+fn by_columns(system: &LinearSystem) -> ByColumns {
     let n = system.n();
     let mut starts = vec![0usize; n + 1];
     system.columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
@@ -90,8 +208,7 @@ fn by_columns(system: &LinearSystem) -> Option<SparseColMat<usize, f64>> {
             *slot += 1;
         }
     }
-    (rows.len() < isize::MAX as usize / 16)
-        .then(|| SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values))
+    ByColumns { starts, rows, values }
 }
 
 /// Solves a small dense system given by rows.
@@ -128,11 +245,15 @@ mod tests {
         system
     }
 
+    fn line(n: usize) -> Vec<Point> {
+        (0..n).map(|k| [k as f64, 0.0]).collect()
+    }
+
     #[test]
     fn several_right_sides_share_one_factorisation_and_satisfy_their_equations() -> Result<(), MfdmError> {
         let system = tridiagonal(200);
         let other: Vec<f64> = (0..200).map(|i| f64::from(i % 7) - 3.0).collect();
-        let solutions = solve(&system, &[system.rhs.clone(), other.clone(), vec![0.0; 200]])?;
+        let solutions = solve(&system, &line(200), &[system.rhs.clone(), other.clone(), vec![0.0; 200]])?;
         for (x, b) in solutions.x.iter().zip([&system.rhs, &other]) {
             let worst = system.apply(x).iter().zip(b).map(|(ax, b)| (ax - b).abs()).fold(0.0, f64::max);
             assert!(worst < 1e-12); // rounding of numbers up to 200
@@ -152,6 +273,6 @@ mod tests {
             system.push(&row, 1.0);
         }
         system.rhs[1] = 2.0;
-        assert!(solve(&system, &[system.rhs.clone()]).is_err());
+        assert!(solve(&system, &line(2), &[system.rhs.clone()]).is_err());
     }
 }

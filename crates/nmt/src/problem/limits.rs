@@ -13,6 +13,9 @@ pub(super) const LARGEST: f64 = 1.0e30;
 /// And at least this, where they must not be 0.
 pub(super) const SMALLEST: f64 = 1.0e-30;
 
+/// Most nodes an edge may be given of its own: a cloud of 10⁸ grid points has 10⁴ along a side.
+const MOST_EDGE_NODES: i128 = 1_000_000;
+
 /// The orders of the MWLS polynomial that exist.
 const ORDERS: [usize; 1] = [2];
 
@@ -141,9 +144,9 @@ pub(super) fn edge_nodes(n: i128) -> Result<usize, Refusal> {
     if n < 2 {
         return refuse(format!("`nodes` of the edge is {n}"), "give at least 2: both its ends count");
     }
-    if n as f64 > MAX_GRID_POINTS {
+    if n > MOST_EDGE_NODES {
         return refuse(
-            format!("`nodes` of the edge is {n}, more than {MAX_GRID_POINTS:e}"),
+            format!("`nodes` of the edge is {n}, more than {MOST_EDGE_NODES}"),
             "give fewer, or leave it out: then the edge follows the density of its contour",
         );
     }

@@ -364,6 +364,9 @@ pub(super) fn split(error: &str) -> (String, String) {
     (message.to_owned(), remedy.to_owned())
 }
 
+/// Fewest nodes of an edge that returns to its vertex, both its ends counted: a triangle.
+const CLOSED_PATH_NODES: usize = 4;
+
 /// The path through items that alternate as they should; `None`, with the fault noted, where an edge cannot be.
 fn closed_path(
     reader: &mut Reader<'_>,
@@ -406,6 +409,12 @@ fn closed_path(
         if n == 1 && !matches!(curve, Curve::Parametric { .. }) {
             let message = "this edge cannot lead from a vertex back to itself";
             let remedy = "split it at a second vertex, or give circle = { centre, radius } for a full circle";
+            reader.faults.push(mark.place, item_number(item, mark.number.unwrap_or(1)), message, remedy);
+            return None;
+        }
+        if let Some(count) = nodes.filter(|&count| n == 1 && count < CLOSED_PATH_NODES) {
+            let message = format!("`nodes` of this closed edge is {count}: its first and last node are one");
+            let remedy = format!("give at least {CLOSED_PATH_NODES}, or leave it out");
             reader.faults.push(mark.place, item_number(item, mark.number.unwrap_or(1)), message, remedy);
             return None;
         }

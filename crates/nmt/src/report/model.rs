@@ -4,7 +4,7 @@ use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
 use crate::problem::Problem;
 use crate::report::singular::singular_vertices;
 use crate::report::warnings;
-use nmt_cloud::{Census, Cloud};
+use nmt_cloud::{Census, Cloud, Section};
 use nmt_geom::Point;
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_mfdm::{StarReport, Stress};
@@ -219,6 +219,13 @@ impl Report {
         report
     }
 
+    /// The report of a check: clouds, and what a solution will have to say of their sections.
+    pub fn of_check(problem: &Problem, parts: &[CloudPart]) -> Self {
+        let mut report = Self::of_clouds(problem, parts);
+        report.warn_of_sections(problem, parts.iter().map(|part| (&*part.name, &part.section)));
+        report
+    }
+
     /// The report of meshes.
     pub fn of_meshes(problem: &Problem, parts: &[MeshPart]) -> Self {
         let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
@@ -230,16 +237,23 @@ impl Report {
     pub fn of_solutions(problem: &Problem, parts: &[SolvedPart], points: &[Point]) -> Self {
         let mut report = Self::new(problem, parts.iter().map(solved_report).collect());
         let points = points_report(parts, points);
-        if parts.len() > 1 {
-            report.warnings.push(warnings::several_subdomains(parts.len()));
-        }
         for part in parts {
             report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
-            report.warnings.extend(warnings::of_solution(part));
         }
+        report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
+        parts.iter().for_each(|part| report.warnings.extend(warnings::of_solution(part)));
         report.warnings.extend(points.iter().filter_map(warnings::of_point));
         report.points = Some(points);
         report
+    }
+
+    fn warn_of_sections<'a>(&mut self, problem: &Problem, sections: impl Iterator<Item = (&'a str, &'a Section)>) {
+        for (name, section) in sections {
+            self.warnings.extend(warnings::of_section(name, section, problem.solve.holes));
+        }
+        if self.subdomains.len() > 1 {
+            self.warnings.push(warnings::several_subdomains(self.subdomains.len()));
+        }
     }
 
     fn new(problem: &Problem, subdomains: Vec<SubdomainReport>) -> Self {

@@ -123,7 +123,8 @@ impl<U: Fn(i32) -> String> Text<U> {
     }
 }
 
-fn place([x, y]: [f64; 2]) -> String {
+/// A point as text, each coordinate with seven significant digits.
+pub fn place([x, y]: [f64; 2]) -> String {
     format!("({}, {})", number(x), number(y))
 }
 

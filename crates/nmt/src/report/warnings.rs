@@ -3,55 +3,88 @@
 use crate::pipeline::SolvedPart;
 use crate::report::model::PointReport;
 use crate::report::singular::singular_vertices;
+use crate::report::text::place;
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
-use nmt_cloud::Cloud;
+use nmt_cloud::{Cloud, Section};
+use nmt_geom::tol::SAME_POINT_REL;
 use nmt_mfdm::HoleCondition;
 
+/// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
+/// nodes beside the boundary.
+const UNEQUAL_SPACINGS: f64 = 2.0;
+
 /// Warnings of a cloud.
-pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Option<String> {
-    thinnest(cloud).map(|spot| {
-        let [x, y] = spot.at;
-        let nodes = spot.nodes_across;
-        format!(
-            "subdomain \"{name}\": only {nodes} nodes across its thinnest part, near ({x:.6}, {y:.6}); \
-             choose densities that give at least {FEWEST_ACROSS}"
-        )
-    })
+pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let [h_x, h_y] = cloud.spacing();
+    let ratio = h_x.max(h_y) / h_x.min(h_y);
+    if ratio > UNEQUAL_SPACINGS * (1.0 + SAME_POINT_REL) {
+        // The finer density for both directions.
+        let extent = cloud.boundary().envelope();
+        let h = h_x.min(h_y);
+        let count = |length: f64| (length / h).round() as usize + 1;
+        warnings.push(format!(
+            "subdomain \"{name}\": the spacings h_x and h_y differ by a factor of {ratio:.1}, which clears rows of nodes \
+             beside the boundary and costs digits; nodes = [{}, {}] would make them equal",
+            count(extent.width()),
+            count(extent.height())
+        ));
+    }
+    if let Some(spot) = thinnest(cloud) {
+        warnings.push(format!(
+            "subdomain \"{name}\": only {} across its thinnest part, near {}; \
+             choose densities that give at least {FEWEST_ACROSS}",
+            counted(spot.nodes_across, "node", "nodes"),
+            place(spot.at)
+        ));
+    }
+    warnings
 }
 
-/// Warnings of a solution.
-pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
-    let (name, solution) = (&solved.part.name, &solved.solution);
+/// Warnings that need no solution: of the section, and of the condition on its holes.
+pub(super) fn of_section(name: &str, section: &Section, holes: HoleCondition) -> Vec<String> {
     let mut warnings = Vec::new();
-    if solution.holes.iter().any(|hole| hole.condition == HoleCondition::Zero) {
+    if !section.holes.is_empty() && holes == HoleCondition::Zero {
         warnings.push(format!(
             "subdomain \"{name}\": F = 0 on its holes (holes = \"zero\", the paper's condition): 2∫F is not the torsion \
              constant of the hollow section; use holes = \"circulation\" for that"
         ));
     }
-    let singular = singular_vertices(&solved.part.section);
-    if let Some([x, y]) = singular.first() {
+    let singular = singular_vertices(section);
+    if let Some(&first) = singular.first() {
         warnings.push(format!(
-            "subdomain \"{name}\": the exact τ is infinite at {} re-entrant {}, such as ({x:.6}, {y:.6}); \
+            "subdomain \"{name}\": the exact τ is infinite at {}, such as {}; \
              tau_max is the largest at nodes and grows under refinement",
-            singular.len(),
-            if singular.len() == 1 { "vertex" } else { "vertices" },
+            counted(singular.len(), "re-entrant vertex", "re-entrant vertices"),
+            place(first)
         ));
     }
+    warnings
+}
+
+/// Warnings of a solution, beyond those of its section.
+pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
+    let (name, solution) = (&solved.part.name, &solved.solution);
+    let mut warnings = Vec::new();
+    let lowered = |n: usize| counted(n, "node", "nodes");
     if solution.stars.order_lowered > 0 {
         warnings.push(format!(
-            "subdomain \"{name}\": {} stars carry only a polynomial of lower order; choose more nodes across thin parts",
-            solution.stars.order_lowered
+            "subdomain \"{name}\": the stars of {} carry only a polynomial of lower order; \
+             choose more nodes across thin parts",
+            lowered(solution.stars.order_lowered)
         ));
     }
     if solution.recovery_stars.order_lowered > 0 {
         warnings.push(format!(
-            "subdomain \"{name}\": stresses at {} nodes are recovered with a lower order; \
-             choose more nodes across thin parts",
-            solution.recovery_stars.order_lowered
+            "subdomain \"{name}\": stresses at {} are recovered with a lower order; choose more nodes across thin parts",
+            lowered(solution.recovery_stars.order_lowered)
         ));
     }
     warnings
+}
+
+fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
 }
 
 /// The paper solves each subdomain alone.
@@ -64,6 +97,6 @@ pub(super) fn several_subdomains(n: usize) -> String {
 
 /// A point outside.
 pub(super) fn of_point(point: &PointReport) -> Option<String> {
-    let [x, y] = point.at;
-    point.subdomain.is_none().then(|| format!("point ({x}, {y}) lies outside every subdomain; its values are null"))
+    let at = place(point.at);
+    point.subdomain.is_none().then(|| format!("point {at} lies outside every subdomain; its values are null"))
 }
