@@ -10,7 +10,7 @@ use crate::solution::{HoleResult, TorsionSolution};
 use crate::solver::direct;
 use crate::star::default_star;
 use crate::stencils::{StarParams, StarReport, Stencils};
-use crate::surroundings::Surroundings;
+use crate::surroundings::{Metric, Surroundings};
 use crate::system::{FreeHoles, LinearSystem, Role, Roles};
 use crate::{local, variational};
 use nmt_geom::{NodeId, Point};
@@ -87,8 +87,8 @@ pub fn solve_observed(
 ) -> Result<TorsionSolution, MfdmError> {
     problem.check()?;
     let surroundings = Surroundings::new(mesh.cloud());
-    let larger = surroundings.metric().star_factor();
-    let stars = star_params(mesh, params, larger)?;
+    let metric = surroundings.metric();
+    let stars = star_params(mesh, params, &metric)?;
     let nearest = surroundings.nearest();
     let free_holes = if problem.holes == HoleCondition::Circulation { FreeHoles::Yes } else { FreeHoles::No };
     let roles = Roles::new(mesh, free_holes);
@@ -122,7 +122,7 @@ pub fn solve_observed(
     drop(system);
     ended(Stage::Solve);
 
-    let recovery = StarParams { order: RECOVERY_ORDER, size: (default_star(RECOVERY_ORDER) as f64 * larger) as usize };
+    let recovery = StarParams { order: RECOVERY_ORDER, size: metric.star_size(default_star(RECOVERY_ORDER)) };
     let field = NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?;
     let unknowns = roles.n_unknowns + roles.n_holes;
     let solution = results(problem, mesh, Solved { values, constants, field, residual, unknowns, stars: star_report });
@@ -132,14 +132,14 @@ pub fn solve_observed(
     if numbers.iter().all(|v| v.is_finite()) { Ok(solution) } else { Err(MfdmError::Singular { n: unknowns }) }
 }
 
-fn star_params(mesh: &Mesh, params: &SolveParams, larger: f64) -> Result<StarParams, MfdmError> {
+fn star_params(mesh: &Mesh, params: &SolveParams, metric: &Metric) -> Result<StarParams, MfdmError> {
     let (n_nodes, least) = (mesh.cloud().n_nodes(), n_monomials(ORDER));
     let size = match params.star {
         Some(star) if star < least || star > n_nodes => {
             return Err(MfdmError::StarSize { star, order: ORDER, least, n_nodes });
         }
         Some(star) => star,
-        None => ((default_star(ORDER) as f64 * larger) as usize).min(n_nodes),
+        None => metric.star_size(default_star(ORDER)).min(n_nodes),
     };
     Ok(StarParams { order: ORDER, size })
 }

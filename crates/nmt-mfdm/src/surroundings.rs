@@ -37,8 +37,7 @@ impl Metric {
         let h = cloud.max_spacing();
         let stretch = cloud.spacing().map(|own| if own > 0.0 { h / own } else { 1.0 });
         let ratio = stretch[0].max(stretch[1]);
-        // The slack keeps rounding of the spacings from deciding at a ratio of exactly 2.
-        let is_stretched = ratio > EQUAL_SPACINGS && ratio <= STRETCHABLE * (1.0 + SAME_POINT_REL);
+        let is_stretched = above(ratio, EQUAL_SPACINGS) && !above(ratio, STRETCHABLE);
         Self { stretch: if is_stretched { stretch } else { [1.0, 1.0] }, ratio }
     }
 
@@ -47,14 +46,14 @@ impl Metric {
         self.stretch
     }
 
-    /// How many times larger than usual stars must be: at a ratio of 3 the nearest 9 nodes are almost one row, 20 are
-    /// three of them.
-    pub fn star_factor(&self) -> f64 {
-        if self.ratio > STRETCHABLE * (1.0 + SAME_POINT_REL) {
-            (1.0 + self.ratio / 2.0).min(MAX_STAR_FACTOR)
-        } else {
-            1.0
+    /// Nodes in a star whose usual size is `usual`: at a ratio of 3 the nearest 9 nodes are almost one row, 20 are three
+    /// of them.
+    pub fn star_size(&self, usual: usize) -> usize {
+        if !above(self.ratio, STRETCHABLE) {
+            return usual;
         }
+        let larger = usual as f64 * (1.0 + self.ratio / 2.0).min(MAX_STAR_FACTOR);
+        (larger * (1.0 + SAME_POINT_REL)) as usize
     }
 
     /// A point, or a difference of points, in stretched coordinates.
@@ -62,6 +61,11 @@ impl Metric {
     pub fn stretched(&self, p: Point) -> Point {
         [p[0] * self.stretch[0], p[1] * self.stretch[1]]
     }
+}
+
+/// True where `ratio` is above `limit` by more than rounding: units must not decide at a ratio of exactly 2.
+fn above(ratio: f64, limit: f64) -> bool {
+    ratio > limit * (1.0 + SAME_POINT_REL)
 }
 
 /// The nodes of a cloud as stars see them.

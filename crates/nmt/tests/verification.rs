@@ -249,3 +249,22 @@ fn unequal_spacings_cost_digits_but_never_give_a_wrong_number_and_are_warned_of(
         }
     }
 }
+
+#[test]
+fn units_decide_nothing_at_the_ratios_of_spacings_where_stars_change() {
+    // h_x : h_y exactly 1.25, 2, 8/3 and 3: rounding in one unit or another must not choose other stars.
+    for (width, nodes) in [(2.0, [41, 26]), (2.0, [41, 41]), (8.0 / 3.0, [31, 31]), (3.0, [31, 31])] {
+        let solve = |scale: f64| {
+            let shape = format!("rectangle = {{ from = [0.0, 0.0], to = [{}, {scale}] }}", width * scale);
+            let problem = problem(&shape, nodes, 0.2, "circulation", Formulation::Variational);
+            solve_problem(&problem).expect("a solution").remove(0)
+        };
+        let metre = solve(1.0);
+        for scale in [1e-3, 0.7, 1e6] {
+            let scaled = solve(scale);
+            assert_eq!(scaled.solution.stars.size, metre.solution.stars.size, "width {width}, scale {scale}");
+            let ratio = scaled.solution.j / metre.solution.j / scale.powi(4);
+            assert!((ratio - 1.0).abs() < 1e-9, "width {width}, scale {scale}: {ratio}"); // rounding times condition
+        }
+    }
+}
