@@ -50,8 +50,9 @@ pub enum CurveError {
     },
     /// A curve that does not begin or end at its vertex.
     #[error(
-        "the curve {end} at ({}, {}), {gap:.1e} away from its vertex ({}, {}); move the vertex there, or correct the curve",
-        .point[0], .point[1], .vertex[0], .vertex[1]
+        "the curve {end} at ({}, {}), {} away from its vertex ({}, {}); move the vertex there, or correct the curve \
+         (angles are in radians)",
+        .point[0], .point[1], shown(*.gap), .vertex[0], .vertex[1]
     )]
     MissesVertex {
         /// Which end.
@@ -141,4 +142,10 @@ pub enum CurveError {
         /// The greatest number allowed.
         most: usize,
     },
+}
+
+/// A length as a reader wants it: 0.3 rather than 3.0e-1, 2.0e-9 rather than zeros.
+fn shown(length: f64) -> String {
+    let digits = format!("{length:.2e}").parse().unwrap_or(length);
+    if (1e-3..1e6).contains(&length) { format!("{digits}") } else { format!("{length:.1e}") }
 }

@@ -128,6 +128,17 @@ impl RealBoundary {
         (0..self.n_loops()).map(|k| ring::signed_area(&self.polygon(LoopId::of(k)))).sum()
     }
 
+    /// Centroid of the material, the polygon's.
+    pub fn centroid(&self) -> Point {
+        let mut moment = [0.0; 2];
+        for ring in 0..self.n_loops() {
+            let polygon = self.polygon(LoopId::of(ring));
+            let (area, centroid) = (ring::signed_area(&polygon), ring::centroid(&polygon));
+            (0..2).for_each(|d| moment[d] += area * centroid[d]);
+        }
+        moment.map(|m| m / self.area())
+    }
+
     /// Envelope of all boundary nodes.
     pub fn envelope(&self) -> Bbox {
         Bbox::of(self.xy.iter().copied())
@@ -181,6 +192,8 @@ mod tests {
         let boundary = tube()?;
         assert_eq!(boundary.area(), 15.0);
         assert_eq!(boundary.loop_area(LoopId(1)), 1.0);
+        // (16·2 − 1·1.5)/15
+        assert!(boundary.centroid().iter().all(|c| (c - 30.5 / 15.0).abs() < 1e-15));
         let first = boundary.loop_segments(LoopId(0))[0];
         // The last segment given led from node 3 to node 0 on edge 3; it comes first, turned round.
         assert_eq!((first.from, first.to, first.edge), (NodeId(0), NodeId(3), EdgeId(3)));

@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(faults, [expected]);
         assert_eq!(
             faults[0].to_string(),
-            "the curve ends at (1, 1), 2.5e-1 away from its vertex (1, 1.25); move the vertex there, or correct the curve"
+            "the curve ends at (1, 1), 0.25 away from its vertex (1, 1.25); move the vertex there, or correct the curve (angles are in radians)"
         );
         assert_eq!(of_graph("x^2 + 1e-8", 0.0, 1.0, [[0.0, 0.0], [1.0, 1.0]]).len(), 2);
         assert_eq!(of_graph("x^2 + 1e-9", 0.0, 1.0, [[0.0, 0.0], [1.0, 1.0]]), []);

@@ -44,11 +44,9 @@ pub struct SubdomainReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub triangles: Option<usize>,
     /// Area of the polygon.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub area: Option<f64>,
+    pub area: f64,
     /// Centroid of the polygon.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub centroid: Option<Point>,
+    pub centroid: Point,
     /// h_x and h_y.
     pub spacing: [f64; 2],
     /// Grid points by fate.
@@ -285,8 +283,8 @@ fn cloud_report(name: &str, cloud: &Cloud) -> SubdomainReport {
         nodes: cloud.n_nodes(),
         boundary_nodes: cloud.n_boundary(),
         triangles: None,
-        area: None,
-        centroid: None,
+        area: cloud.boundary().area(),
+        centroid: cloud.boundary().centroid(),
         spacing: cloud.spacing(),
         census: CensusReport { grid, outside, in_hole, near_edge, near_node, kept },
         quality: None,
@@ -300,8 +298,8 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
     let of_quality = |q: nmt_tri::Quality| QualityReport { min: q.min, mean: q.mean, min_angle_deg: q.min_angle_deg };
     SubdomainReport {
         triangles: Some(mesh.n_triangles()),
-        area: Some(mesh.total_area()),
-        centroid: Some(mesh.centroid()),
+        area: mesh.total_area(),
+        centroid: mesh.centroid(),
         quality: quality(mesh).map(of_quality),
         seconds: Seconds { mesh: Some(0.0), ..Seconds::default() },
         ..cloud_report(&part.name, mesh.cloud())

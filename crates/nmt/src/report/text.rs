@@ -64,11 +64,11 @@ impl<U: Fn(i32) -> String> Text<U> {
                 census.grid, census.outside, census.in_hole, census.near_edge, census.near_node, census.kept
             ),
         );
-        if let (Some(triangles), Some(area), Some(centroid)) = (s.triangles, s.area, s.centroid) {
+        if let Some(triangles) = s.triangles {
             self.row("triangles", triangles);
-            self.row("area", format!("{}{u2}", number(area)));
-            self.row("centroid", place(centroid));
         }
+        self.row("area", format!("{}{u2}", number(s.area)));
+        self.row("centroid", place(s.centroid));
         if let Some(q) = &s.quality {
             self.row(
                 "quality",

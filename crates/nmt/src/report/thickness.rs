@@ -14,6 +14,13 @@ const FACING_COSINE: f64 = -0.9;
 /// distance say, within this fraction. The walls of a strip, tapered or not, are joined by another way.
 const CORNER_PATH_REL: f64 = 0.2;
 
+/// Interior angles below this make a wedge, which is thin at its tip whatever the density; 60°.
+const SHARP_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
+
+/// A part near the tip of a wedge is no thinner than this fraction of what its angle and the distance make it: curved
+/// sides close up a little faster.
+const TIP_REL: f64 = 0.4;
+
 /// The thinnest part of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSpot {
@@ -43,6 +50,7 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
         }
         loop_length.extend(std::iter::repeat_n(total, count));
     }
+    let sharp = sharp_vertices(cloud);
     let mut thinnest: Option<(f64, Point)> = None;
     for (k, [a, b]) in ends.iter().enumerate() {
         let direction = sub(*b, *a);
@@ -67,11 +75,36 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
         let path_by_corner = width * (1.0 - facing) / sine;
         let side_of_a_corner = (path / path_by_corner - 1.0).abs() < CORNER_PATH_REL;
         let across = width * rate;
-        if facing < FACING_COSINE && !side_of_a_corner && thinnest.is_none_or(|(least, _)| across < least) {
+        let tip = sharp.iter().any(|v| width > TIP_REL * v.slope * distance(middle, v.at));
+        if facing < FACING_COSINE && !side_of_a_corner && !tip && thinnest.is_none_or(|(least, _)| across < least) {
             thinnest = Some((across, along(middle, width / 2.0, normal)));
         }
     }
     thinnest.map(|(across, at)| ThinSpot { nodes_across: (across + 1e-9).floor() as usize + 1, at })
+}
+
+/// A vertex of the outline whose sides meet at an acute angle.
+struct SharpVertex {
+    at: Point,
+    slope: f64, // width of the wedge over the distance from its tip
+}
+
+fn sharp_vertices(cloud: &Cloud) -> Vec<SharpVertex> {
+    let boundary = cloud.boundary();
+    let mut sharp = Vec::new();
+    for ring in 0..boundary.n_loops() {
+        let segments = boundary.loop_segments(LoopId::of(ring));
+        for (k, s) in segments.iter().enumerate().filter(|(_, s)| s.from.index() < cloud.n_vertices()) {
+            let [at, next] = boundary.ends(s);
+            let [before, _] = boundary.ends(&segments[(k + segments.len() - 1) % segments.len()]);
+            let (to_next, to_last) = (sub(next, at), sub(before, at));
+            let angle = cross(to_next, to_last).atan2(dot(to_next, to_last));
+            if angle > 0.0 && angle < SHARP_ANGLE {
+                sharp.push(SharpVertex { at, slope: angle.tan() });
+            }
+        }
+    }
+    sharp
 }
 
 /// Distance along the ray from `p` to the segment; `None` where it misses.

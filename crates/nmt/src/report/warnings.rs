@@ -54,7 +54,7 @@ pub(super) fn of_section(name: &str, section: &Section, holes: HoleCondition) ->
     if let Some(&first) = singular.first() {
         warnings.push(format!(
             "subdomain \"{name}\": the exact τ is infinite at {}, such as {}; \
-             tau_max is the largest at nodes and grows under refinement",
+             tau_max is merely the largest at nodes there and has no limit under refinement; give the corner its fillet",
             counted(singular.len(), "re-entrant vertex", "re-entrant vertices"),
             place(first)
         ));
