@@ -1,31 +1,33 @@
 //! Nodes at vertices and on edges, joined to the real boundary; paper, Secs 4.1–4.2.
 
 use crate::error::CloudError;
-use crate::generate::{evenly, on_line};
-use crate::irregular::Displacements;
 use crate::section::{CloudParams, Section};
-use nmt_curve::{ArcTable, Curve, Outline, node_count};
+use nmt_curve::{ArcTable, Curve, Division, divide_by_chords, node_count};
+use nmt_geom::point::{along, sub};
 use nmt_geom::{BoundaryLoop, EdgeId, NodeId, Point, RealBoundary};
 
-/// The real boundary and how many of its nodes are vertices.
+/// The real boundary, and where its nodes lie on the outline.
 pub(crate) struct BoundaryNodes {
     pub boundary: RealBoundary,
     pub n_vertices: usize,
+    /// Arc length from the beginning of its edge to each boundary node, as a fraction of the edge; 0 at vertices.
+    pub fractions: Vec<f64>,
 }
 
-/// Places the boundary nodes: every vertex, then the nodes of every edge, evenly by arc length, each displaced along its
-/// edge by ±Amp of a segment where the cloud is irregular.
+/// Places the boundary nodes: every vertex, then the nodes of every edge by its rule, each displaced along its edge by
+/// ±Amp of the shorter of its two segments where the cloud is irregular.
+///
+/// `random` gives 2r − 1 and 2r′ − 1 of (10) for a node and a draw.
 pub(crate) fn boundary_nodes(
     section: &Section,
     params: &CloudParams,
-    displacements: &mut Displacements,
+    random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) -> Result<BoundaryNodes, CloudError> {
     let envelope = section.contour.envelope();
     let rate_of = |nodes: [usize; 2], width: f64, height: f64| [nodes[0] as f64 / width, nodes[1] as f64 / height];
     let main_rate = rate_of(params.nodes, envelope.width(), envelope.height());
-    let mut xy: Vec<Point> = section.loops().flat_map(|outline| outline.vertices.iter().copied()).collect();
-    let n_vertices = xy.len();
-    let mut loops = Vec::new();
+    let mut draft = Draft::at_vertices(section);
+    let n_vertices = draft.xy.len();
     let (mut first_vertex, mut first_edge) = (0, 0);
     for (k, outline) in section.loops().enumerate() {
         let own = k.checked_sub(1).and_then(|hole| params.hole_nodes.get(hole).copied().flatten());
@@ -33,40 +35,147 @@ pub(crate) fn boundary_nodes(
             let own_envelope = outline.envelope();
             rate_of(nodes, own_envelope.width(), own_envelope.height())
         });
-        loops.push(loop_nodes(outline, rate, first_vertex, first_edge, params.irregularity, displacements, &mut xy)?);
+        let mut ring = BoundaryLoop::default();
+        for (e, edge) in outline.edges.iter().enumerate() {
+            let failed = |source| CloudError::Edge { edge: first_edge + e, source };
+            // A closed edge of n nodes has n segments, an open one n − 1.
+            let n_nodes = edge.nodes.unwrap_or_else(|| node_count(&edge.curve, rate));
+            let n_segments = if edge.curve.is_closed() { n_nodes.max(3) } else { n_nodes.max(2) - 1 };
+            let places = Places::new(&edge.curve, n_segments, params.division).map_err(failed)?;
+            let path = EdgePath::new(&edge.curve).map_err(failed)?;
+            draft.begin_edge(&mut ring, NodeId::of(first_vertex + e), EdgeId::of(first_edge + e));
+            for s in 1..places.n_segments() {
+                let slide = match params.irregularity {
+                    0.0 => 0.0,
+                    amplitude => amplitude * random(draft.xy.len(), 0)[0],
+                };
+                draft.push(&mut ring, &path, places.slid(s, slide), EdgeId::of(first_edge + e));
+            }
+        }
+        draft.loops.push(ring);
         first_vertex += outline.vertices.len();
         first_edge += outline.edges.len();
     }
-    Ok(BoundaryNodes { boundary: RealBoundary::new(xy, loops)?, n_vertices })
+    let boundary = RealBoundary::new(draft.xy, draft.loops)?;
+    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions })
 }
 
-fn loop_nodes(
-    outline: &Outline,
-    rate: [f64; 2],
-    first_vertex: usize,
-    first_edge: usize,
-    irregularity: f64,
-    displacements: &mut Displacements,
-    xy: &mut Vec<Point>,
-) -> Result<BoundaryLoop, CloudError> {
-    let mut ring = BoundaryLoop::default();
-    for (k, edge) in outline.edges.iter().enumerate() {
-        // A closed edge of n nodes has n segments, an open one n − 1.
-        let n_nodes = edge.nodes.unwrap_or_else(|| node_count(&edge.curve, rate));
-        let n_segments = if edge.curve.is_closed() { n_nodes.max(3) } else { n_nodes.max(2) - 1 };
-        let path = EdgePath::new(&edge.curve).map_err(|source| CloudError::Edge { edge: first_edge + k, source })?;
-        let edge_id = EdgeId::of(first_edge + k);
-        ring.nodes.push(NodeId::of(first_vertex + k));
-        ring.edges.push(edge_id);
-        for s in 1..n_segments {
-            let node = xy.len();
-            let slide = if irregularity > 0.0 { irregularity * displacements.draw(node, 0)[0] } else { 0.0 };
-            xy.push(path.point_at(evenly(s, n_segments) + slide / n_segments as f64));
-            ring.nodes.push(NodeId::of(node));
-            ring.edges.push(edge_id);
+/// Slides the edge nodes of an existing boundary along their edges, each by ±Amp of the shorter of its two segments.
+///
+/// `fractions` are those of the boundary nodes, which must be numbered and joined as [`boundary_nodes`] does.
+pub(crate) fn slide(
+    section: &Section,
+    boundary: &RealBoundary,
+    n_vertices: usize,
+    fractions: &[f64],
+    amplitude: f64,
+    random: &mut dyn FnMut(usize, usize) -> [f64; 2],
+) -> Result<BoundaryNodes, CloudError> {
+    let mut draft = Draft::at_vertices(section);
+    let edges: Vec<&Curve> = section.loops().flat_map(|outline| &outline.edges).map(|edge| &edge.curve).collect();
+    if n_vertices != draft.xy.len() || edges.len() != n_vertices {
+        return Err(CloudError::OtherSection { vertices: draft.xy.len(), n_vertices });
+    }
+    // The nodes of each edge by number, which is their order along it.
+    let mut on_edge = vec![Vec::new(); edges.len()];
+    for segment in boundary.segments() {
+        for node in [segment.from, segment.to] {
+            if node.index() >= n_vertices {
+                let Some(nodes) = on_edge.get_mut(segment.edge.index()) else {
+                    return Err(CloudError::OtherSection { vertices: draft.xy.len(), n_vertices });
+                };
+                nodes.push(node);
+            }
         }
     }
-    Ok(ring)
+    let mut edge = 0;
+    for outline in section.loops() {
+        let mut ring = BoundaryLoop::default();
+        for _ in &outline.edges {
+            let curve = edges[edge];
+            let path = EdgePath::new(curve).map_err(|source| CloudError::Edge { edge, source })?;
+            on_edge[edge].sort_unstable();
+            on_edge[edge].dedup();
+            let inner = on_edge[edge].iter().map(|node| fractions[node.index()]);
+            let places = Places::Listed(std::iter::once(0.0).chain(inner).chain([1.0]).collect());
+            draft.begin_edge(&mut ring, NodeId::of(edge), EdgeId::of(edge));
+            for s in 1..places.n_segments() {
+                let slide = amplitude * random(draft.xy.len(), 0)[0];
+                draft.push(&mut ring, &path, places.slid(s, slide), EdgeId::of(edge));
+            }
+            edge += 1;
+        }
+        draft.loops.push(ring);
+    }
+    let boundary = RealBoundary::new(draft.xy, draft.loops)?;
+    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions })
+}
+
+/// Boundary nodes on the way to a real boundary.
+struct Draft {
+    xy: Vec<Point>,
+    fractions: Vec<f64>,
+    loops: Vec<BoundaryLoop>,
+}
+
+impl Draft {
+    /// The vertices: contour first, then holes.
+    fn at_vertices(section: &Section) -> Self {
+        let xy: Vec<Point> = section.loops().flat_map(|outline| outline.vertices.iter().copied()).collect();
+        Self { fractions: vec![0.0; xy.len()], xy, loops: Vec::new() }
+    }
+
+    /// Goes on with `ring` from a vertex along an edge.
+    fn begin_edge(&self, ring: &mut BoundaryLoop, vertex: NodeId, edge: EdgeId) {
+        ring.nodes.push(vertex);
+        ring.edges.push(edge);
+    }
+
+    /// Adds a node of an edge.
+    fn push(&mut self, ring: &mut BoundaryLoop, path: &EdgePath, fraction: f64, edge: EdgeId) {
+        ring.nodes.push(NodeId::of(self.xy.len()));
+        ring.edges.push(edge);
+        self.xy.push(path.point_at(fraction));
+        self.fractions.push(fraction);
+    }
+}
+
+/// Where the nodes of an edge lie before they slide: fractions of its length.
+enum Places {
+    /// Evenly, in so many segments.
+    Even(usize),
+    /// At these, from 0 to 1.
+    Listed(Vec<f64>),
+}
+
+impl Places {
+    fn new(curve: &Curve, n_segments: usize, division: Division) -> Result<Self, nmt_curve::CurveError> {
+        // Equal chords of a line are its equal parts.
+        if division == Division::Arc || curve.is_straight() {
+            return Ok(Self::Even(n_segments));
+        }
+        let n_nodes = if curve.is_closed() { n_segments } else { n_segments + 1 };
+        let mut fractions = divide_by_chords(curve, n_nodes)?.fractions;
+        if curve.is_closed() {
+            fractions.push(1.0);
+        }
+        Ok(Self::Listed(fractions))
+    }
+
+    fn n_segments(&self) -> usize {
+        match self {
+            Self::Even(n) => *n,
+            Self::Listed(fractions) => fractions.len() - 1,
+        }
+    }
+
+    /// Node `s` slid by `slide` of the shorter of its segments; below ½, so that the order is kept.
+    fn slid(&self, s: usize, slide: f64) -> f64 {
+        match self {
+            Self::Even(n) => evenly(s, *n) + slide / *n as f64,
+            Self::Listed(f) => f[s] + slide * (f[s] - f[s - 1]).min(f[s + 1] - f[s]),
+        }
+    }
 }
 
 /// An edge parametrised by the fraction of its length.
@@ -89,4 +198,16 @@ impl EdgePath {
             Self::Curved(table) => table.point_at(fraction * table.length()),
         }
     }
+}
+
+/// Fraction of the way that the end of segment `k` of `n` lies along an edge.
+fn evenly(k: usize, n_segments: usize) -> f64 {
+    k as f64 / n_segments as f64
+}
+
+/// The point at fraction `t` of a straight edge; paper, eq. (1).
+///
+/// Written with the difference, so that nodes of a horizontal or vertical edge share a coordinate to the bit.
+fn on_line(from: Point, to: Point, t: f64) -> Point {
+    along(from, t, sub(to, from))
 }

@@ -2,27 +2,38 @@
 
 use crate::census::Census;
 use crate::lattice::Lattice;
-use nmt_geom::point::{distance_squared, sub};
+use crate::section::ClearanceUnit;
+use nmt_geom::point::sub;
 use nmt_geom::tol::CLEARANCE_SLACK_REL;
-use nmt_geom::{LoopId, Point, RealBoundary, SegmentIndex, segment, side};
+use nmt_geom::{Bbox, LoopId, Point, RealBoundary, SegmentIndex, segment, side};
 use std::cmp::Ordering;
 
-/// The least distances of an interior node, user's length unit, already less the slack of \[D7\].
+/// The least distances of an interior node, already less the slack of \[D7\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// From every segment of the real boundary.
+    /// From every segment of the real boundary, user's length unit.
     pub segment: f64,
-    /// From every boundary node.
+    /// From every boundary node, user's length unit.
     pub node: f64,
+    /// Factors of x and y, each at least 1, of the coordinates that distances are measured in: 1 and 1, or for
+    /// [`ClearanceUnit::Scaled`] those that make both spacings max(h_x, h_y).
+    pub stretch: [f64; 2],
 }
 
 impl Clearance {
-    /// `edge` and `node` are fractions of max(h_x, h_y): ⅓ and ½ in the paper.
-    pub fn new(lattice: &Lattice, size: f64, edge: f64, node: f64) -> Self {
-        let [h_x, h_y] = lattice.spacing();
-        let h = h_x.max(h_y);
-        let slack = CLEARANCE_SLACK_REL * size;
-        Self { segment: edge * h - slack, node: node * h - slack }
+    /// No least distance: of clouds that were not generated here.
+    pub const NONE: Self = Self { segment: 0.0, node: 0.0, stretch: [1.0; 2] };
+
+    /// `edge` and `node` are fractions of the spacing, ⅓ and ½ in the paper; `size` is the diagonal of the envelope.
+    pub fn new(lattice: &Lattice, size: f64, unit: ClearanceUnit, edge: f64, node: f64) -> Self {
+        let spacing = lattice.spacing();
+        let h = spacing[0].max(spacing[1]);
+        let stretch = match unit {
+            ClearanceUnit::Max => [1.0; 2],
+            ClearanceUnit::Scaled => spacing.map(|own| h / own),
+        };
+        let slack = CLEARANCE_SLACK_REL * size * stretch[0].max(stretch[1]);
+        Self { segment: edge * h - slack, node: node * h - slack, stretch }
     }
 
     /// The larger of the two.
@@ -30,22 +41,35 @@ impl Clearance {
         self.segment.max(self.node)
     }
 
+    /// How far along x and y a distance of `reach` extends, user's length unit.
+    pub(crate) fn extent(&self, reach: f64) -> [f64; 2] {
+        self.stretch.map(|factor| reach / factor)
+    }
+
+    fn stretched(&self, p: Point) -> Point {
+        [p[0] * self.stretch[0], p[1] * self.stretch[1]]
+    }
+
+    /// Distance of `p` from the segment `a b` in the stretched coordinates.
+    fn distance(&self, p: Point, a: Point, b: Point) -> f64 {
+        segment::distance_to(self.stretched(p), self.stretched(a), self.stretched(b))
+    }
+
     /// True where `p` keeps both distances; `index` holds the segments of the real boundary.
     pub fn holds(&self, p: Point, index: &SegmentIndex) -> bool {
-        let mut clear = true;
-        index.candidates(p, p, self.reach(), |k| {
+        let window = Bbox::of([p]).grown(self.extent(self.reach()));
+        !index.any_in(&window, |k| {
             let [a, b] = index.segment(k);
-            clear = clear
-                && segment::distance_to(p, a, b) >= self.segment
-                && distance_squared(p, a).sqrt() >= self.node
-                && distance_squared(p, b).sqrt() >= self.node;
-        });
-        clear
+            self.distance(p, a, b) < self.segment
+                || self.distance(p, a, a) < self.node
+                || self.distance(p, b, b) < self.node
+        })
     }
 }
 
-/// What became of a grid point.
+/// What became of a grid point; the first that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub(crate) enum Fate {
     Kept,
     Outside,
@@ -57,7 +81,8 @@ pub(crate) enum Fate {
 /// The interior grid points with their fates, row by row.
 pub(crate) struct Sieve<'a> {
     lattice: &'a Lattice,
-    fates: Vec<Fate>, // shape (N_y − 2, N_x − 2)
+    abscissae: Vec<f64>, // of the columns, N_x of them
+    fates: Vec<Fate>,    // shape (N_y − 2, N_x − 2)
 }
 
 impl<'a> Sieve<'a> {
@@ -65,9 +90,12 @@ impl<'a> Sieve<'a> {
     /// boundary, then the surroundings of each segment.
     pub fn new(lattice: &'a Lattice, boundary: &RealBoundary, clearance: &Clearance) -> Self {
         let [columns, rows] = lattice.interior_shape();
-        let mut sieve = Self { lattice, fates: vec![Fate::Kept; columns * rows] };
-        sieve.mark_outside(boundary);
-        sieve.mark_near(boundary, clearance);
+        let abscissae = (0..lattice.shape[0]).map(|i| lattice.coordinate(0, i)).collect();
+        let mut sieve = Self { lattice, abscissae, fates: vec![Fate::Kept; columns * rows] };
+        if columns > 0 && rows > 0 {
+            sieve.mark_outside(boundary);
+            sieve.mark_near(boundary, clearance);
+        }
         sieve
     }
 
@@ -78,51 +106,45 @@ impl<'a> Sieve<'a> {
     /// Ray casting (`internal_point`), a row at a time: sites left of an odd number of crossings are inside.
     fn mark_outside(&mut self, boundary: &RealBoundary) {
         let [columns, rows] = self.lattice.interior_shape();
-        if columns == 0 || rows == 0 {
-            return;
-        }
-        // (row, first column right of the crossing, is it a hole's?)
-        let mut crossings: Vec<(u32, u32, bool)> = Vec::new();
-        let mut on_boundary: Vec<(usize, bool)> = Vec::new();
+        let mut crossings: Vec<Crossing> = Vec::new();
+        let mut on_boundary: Vec<(usize, Fate)> = Vec::new();
         for ring in 0..boundary.n_loops() {
-            let hole = ring > 0;
+            let fate = if ring > 0 { Fate::InHole } else { Fate::Outside };
             for s in boundary.loop_segments(LoopId::of(ring)) {
                 let [a, b] = boundary.ends(s);
-                self.sites_on(a, b, |slot| on_boundary.push((slot, hole)));
+                self.sites_on(a, b, |slot| on_boundary.push((slot, fate)));
                 for j in self.lattice.interior_range(1, a[1].min(b[1]), a[1].max(b[1])) {
                     let y = self.lattice.coordinate(1, j);
                     if (a[1] > y) != (b[1] > y) {
-                        crossings.push((j as u32, self.first_right_of(a, b, y) as u32, hole));
+                        let column = self.first_right_of(a, b, y) as u32;
+                        crossings.push(Crossing { row: j as u32, column, hole: ring > 0 });
                     }
                 }
             }
         }
-        crossings.sort_unstable();
-        let mut next = 0;
-        for j in 1..=rows {
-            let (mut in_contour, mut in_hole) = (false, false);
-            for i in 1..=columns {
-                while next < crossings.len() && crossings[next].0 as usize == j && crossings[next].1 as usize <= i {
-                    if crossings[next].2 {
-                        in_hole = !in_hole
-                    } else {
-                        in_contour = !in_contour
-                    }
-                    next += 1;
-                }
-                let slot = self.slot(i, j);
-                if !in_contour {
-                    self.fates[slot] = Fate::Outside;
-                } else if in_hole {
-                    self.fates[slot] = Fate::InHole;
+        crossings.sort_unstable_by_key(|c| (c.row, c.column));
+        let mut next = crossings.into_iter().peekable();
+        for (j, row) in (1..=rows as u32).zip(self.fates.chunks_mut(columns)) {
+            let (mut in_contour, mut in_hole, mut from) = (false, false, 1);
+            let fate = |in_contour: bool, in_hole: bool| match (in_contour, in_hole) {
+                (false, _) => Fate::Outside,
+                (true, true) => Fate::InHole,
+                (true, false) => Fate::Kept,
+            };
+            while let Some(c) = next.next_if(|c| c.row == j) {
+                let to = (c.column as usize).clamp(from, columns + 1);
+                row[from - 1..to - 1].fill(fate(in_contour, in_hole));
+                from = to;
+                if c.hole {
+                    in_hole = !in_hole;
+                } else {
+                    in_contour = !in_contour;
                 }
             }
-            while next < crossings.len() && crossings[next].0 as usize == j {
-                next += 1;
-            }
+            row[from - 1..].fill(fate(in_contour, in_hole));
         }
-        for (slot, hole) in on_boundary {
-            self.fates[slot] = if hole { Fate::InHole } else { Fate::Outside };
+        for (slot, fate) in on_boundary {
+            self.fates[slot] = fate;
         }
     }
 
@@ -130,7 +152,7 @@ impl<'a> Sieve<'a> {
     fn first_right_of(&self, a: Point, b: Point, y: f64) -> usize {
         let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
         let x = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
-        let is_left = |i: usize| side(low, high, [self.lattice.coordinate(0, i), y]) == Ordering::Greater;
+        let is_left = |i: usize| side(low, high, [self.abscissae[i], y]) == Ordering::Greater;
         let near = self.lattice.interior_range(0, x, x);
         let mut first = near.start;
         while first < near.end && is_left(first) {
@@ -154,7 +176,7 @@ impl<'a> Sieve<'a> {
                 (x, x)
             };
             for i in self.lattice.interior_range(0, x0, x1) {
-                if segment::contains([self.lattice.coordinate(0, i), y], a, b) {
+                if segment::contains([self.abscissae[i], y], a, b) {
                     visit(self.slot(i, j));
                 }
             }
@@ -164,10 +186,10 @@ impl<'a> Sieve<'a> {
     fn mark_near(&mut self, boundary: &RealBoundary, clearance: &Clearance) {
         let lattice = self.lattice;
         for [a, b] in boundary.all_ends() {
-            sites_near(lattice, a, b, clearance.segment, |i, j| self.doom(i, j, Fate::NearEdge));
+            sites_near(lattice, a, b, clearance, clearance.segment, |i, j| self.doom(i, j, Fate::NearEdge));
         }
         for &p in boundary.xy() {
-            sites_near(lattice, p, p, clearance.node, |i, j| self.doom(i, j, Fate::NearNode));
+            sites_near(lattice, p, p, clearance, clearance.node, |i, j| self.doom(i, j, Fate::NearNode));
         }
     }
 
@@ -178,16 +200,26 @@ impl<'a> Sieve<'a> {
         }
     }
 
-    /// The kept sites (i, j), row by row.
-    pub fn kept(&self) -> impl Iterator<Item = (usize, usize)> {
-        let columns = self.lattice.interior_shape()[0];
-        let kept = self.fates.iter().enumerate().filter(|(_, fate)| **fate == Fate::Kept);
-        kept.map(move |(slot, _)| (slot % columns + 1, slot / columns + 1))
+    /// Calls `visit` with the kept sites, row by row: the number of the site, j·N_x + i, and its place.
+    pub fn kept(&self, mut visit: impl FnMut(u32, Point)) {
+        let columns = self.lattice.interior_shape()[0].max(1);
+        for (row, j) in self.fates.chunks(columns).zip(1..) {
+            let y = self.lattice.coordinate(1, j);
+            for (fate, i) in row.iter().zip(1..) {
+                if *fate == Fate::Kept {
+                    visit(self.lattice.number(i, j), [self.abscissae[i], y]);
+                }
+            }
+        }
     }
 
     /// Counts by cause.
     pub fn census(&self) -> Census {
-        let count = |fate: Fate| self.fates.iter().filter(|f| **f == fate).count();
+        let mut counts = [0usize; 5];
+        for &fate in &self.fates {
+            counts[fate as usize] += 1;
+        }
+        let count = |fate: Fate| counts[fate as usize];
         Census {
             grid: self.fates.len(),
             outside: count(Fate::Outside),
@@ -199,17 +231,33 @@ impl<'a> Sieve<'a> {
     }
 }
 
-/// Calls `visit` with every interior site nearer than `radius` to the segment `a b`.
-pub(crate) fn sites_near(lattice: &Lattice, a: Point, b: Point, radius: f64, mut visit: impl FnMut(usize, usize)) {
+/// Where a row of the grid crosses the boundary.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    row: u32,
+    column: u32, // the first site right of it
+    hole: bool,
+}
+
+/// Calls `visit` with every interior site nearer than `radius` to the segment `a b`, distances being those of `clearance`.
+pub(crate) fn sites_near(
+    lattice: &Lattice,
+    a: Point,
+    b: Point,
+    clearance: &Clearance,
+    radius: f64,
+    mut visit: impl FnMut(usize, usize),
+) {
+    let [reach_x, reach_y] = clearance.extent(radius);
     let (low, high) = if a[1] <= b[1] { (a, b) } else { (b, a) };
     let slope = (high[0] - low[0]) / (high[1] - low[1]);
-    for j in lattice.interior_range(1, low[1] - radius, high[1] + radius) {
+    for j in lattice.interior_range(1, low[1] - reach_y, high[1] + reach_y) {
         let y = lattice.coordinate(1, j);
         // Where the segment is nearer to the row than `radius`, its abscissae span this.
         let x_at = |y: f64| low[0] + (y.clamp(low[1], high[1]) - low[1]) * slope;
-        let (x0, x1) = if slope.is_finite() { (x_at(y - radius), x_at(y + radius)) } else { (a[0], b[0]) };
-        for i in lattice.interior_range(0, x0.min(x1) - radius, x0.max(x1) + radius) {
-            if segment::distance_to([lattice.coordinate(0, i), y], a, b) < radius {
+        let (x0, x1) = if slope.is_finite() { (x_at(y - reach_y), x_at(y + reach_y)) } else { (a[0], b[0]) };
+        for i in lattice.interior_range(0, x0.min(x1) - reach_x, x0.max(x1) + reach_x) {
+            if clearance.distance([lattice.coordinate(0, i), y], a, b) < radius {
                 visit(i, j);
             }
         }
@@ -236,8 +284,7 @@ mod tests {
     fn grid_points_exactly_on_a_skew_edge_are_outside_even_without_clearance() {
         let triangle = polygon(vec![[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]);
         let lattice = envelope_lattice(&triangle, [9, 9]);
-        let none = Clearance { segment: 0.0, node: 0.0 };
-        let sieve = Sieve::new(&lattice, &triangle, &none);
+        let sieve = Sieve::new(&lattice, &triangle, &Clearance::NONE);
         // Strictly inside: i + j < 8 with i, j from 1 to 7: 21 of 49.
         assert_eq!(sieve.census(), Census { grid: 49, outside: 28, kept: 21, ..Census::default() });
     }
@@ -247,6 +294,7 @@ mod tests {
         fn the_sieve_agrees_with_a_test_of_every_point_against_every_segment(
             radii in prop::collection::vec(1u32..6, 5..12),
             shape in prop::array::uniform2(3usize..24),
+            unit in prop::sample::select(ClearanceUnit::ALL.to_vec()),
         ) {
             // A star-shaped polygon with small integer radii: many ties.
             let n = radii.len() as f64;
@@ -260,14 +308,15 @@ mod tests {
             prop_assume!(boundary.faults().is_empty());
             let lattice = envelope_lattice(&boundary, shape);
             let size = boundary.envelope().size();
-            let clearance = Clearance::new(&lattice, size, 1.0 / 3.0, 0.5);
-            let kept: Vec<_> = Sieve::new(&lattice, &boundary, &clearance).kept().collect();
-            let (locator, index) = (boundary.locator(), boundary.segment_index());
+            let clearance = Clearance::new(&lattice, size, unit, 1.0 / 3.0, 0.5);
+            let mut kept = Vec::new();
+            Sieve::new(&lattice, &boundary, &clearance).kept(|number, p| kept.push((number, p)));
+            let index = boundary.segment_index();
             for j in 1..shape[1] - 1 {
                 for i in 1..shape[0] - 1 {
                     let p = lattice.site(i, j);
-                    let expected = locator.locate(p) == Location::Inside && clearance.holds(p, &index);
-                    prop_assert_eq!(kept.contains(&(i, j)), expected, "site ({}, {}) at {:?}", i, j, p);
+                    let expected = index.locate(p) == Location::Inside && clearance.holds(p, &index);
+                    prop_assert_eq!(kept.contains(&(lattice.number(i, j), p)), expected, "site ({}, {}) at {:?}", i, j, p);
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! The cloud: coordinates, kinds, outline edges, spacing.
 
 use crate::census::Census;
+use crate::clearance::Clearance;
 use crate::error::CloudError;
+use crate::lattice::Lattice;
 use nmt_geom::{EdgeId, LoopId, NodeId, Point, RealBoundary};
 
 /// What kind of node it is; the paper's Nodes_codes.
@@ -41,15 +43,50 @@ pub struct Cloud {
     xy: Vec<Point>, // shape (n_nodes, 2), user's length unit
     n_vertices: usize,
     boundary: RealBoundary,
-    edges: Vec<NodeEdges>, // shape (n_boundary,)
+    edges: Vec<NodeEdges>,       // shape (n_boundary,)
+    fractions: Option<Vec<f64>>, // shape (n_boundary,)
     spacing: [f64; 2],
+    clearance: Clearance,
+    born: Option<Born>,
     census: Census,
+}
+
+/// Where interior nodes come from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Born {
+    pub lattice: Lattice,
+    pub sites: Vec<u32>, // shape (n_interior,)
+}
+
+impl Born {
+    /// True where every interior node is less than half a spacing from its site along x and y.
+    pub fn all_within_boxes(&self, interior: &[Point]) -> bool {
+        let half = self.lattice.spacing().map(|h| 0.5 * h);
+        self.sites.iter().zip(interior).all(|(&site, p)| {
+            let [i, j] = self.lattice.site_of(site);
+            let site = self.lattice.site(i, j);
+            (0..2).all(|d| (p[d] - site[d]).abs() < half[d])
+        })
+    }
+}
+
+/// What a cloud is put together from.
+pub(crate) struct CloudParts {
+    pub xy: Vec<Point>, // those of the boundary first
+    pub n_vertices: usize,
+    pub boundary: RealBoundary,
+    pub fractions: Option<Vec<f64>>,
+    pub spacing: [f64; 2],
+    pub clearance: Clearance,
+    pub born: Option<Born>,
+    pub census: Census,
 }
 
 impl Cloud {
     /// Puts a cloud together from a real boundary (whose first `n_vertices` nodes are vertices) and interior nodes.
     ///
-    /// `spacing` is [h_x, h_y], the scale of clearances and visibility.
+    /// `spacing` is [h_x, h_y], the scale of visibility. Such a cloud has no lattice, keeps no clearance, and does not know
+    /// where its nodes lie along their edges.
     pub fn from_parts(
         boundary: RealBoundary,
         n_vertices: usize,
@@ -57,6 +94,14 @@ impl Cloud {
         spacing: [f64; 2],
         census: Census,
     ) -> Self {
+        let mut xy = boundary.xy().to_vec();
+        xy.extend(interior);
+        let clearance = Clearance::NONE;
+        Self::new(CloudParts { xy, n_vertices, boundary, fractions: None, spacing, clearance, born: None, census })
+    }
+
+    pub(crate) fn new(parts: CloudParts) -> Self {
+        let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census } = parts;
         let none = NodeEdges { first: EdgeId(u32::MAX), second: EdgeId(u32::MAX) };
         let mut edges = vec![none; boundary.xy().len()];
         for segment in boundary.segments() {
@@ -77,9 +122,7 @@ impl Cloud {
                 }
             }
         }
-        let mut xy = boundary.xy().to_vec();
-        xy.extend(interior);
-        Self { xy, n_vertices, boundary, edges, spacing, census }
+        Self { xy, n_vertices, boundary, edges, fractions, spacing, clearance, born, census }
     }
 
     /// Coordinates, shape (n_nodes, 2), user's length unit.
@@ -138,6 +181,29 @@ impl Cloud {
         self.spacing[0].max(self.spacing[1])
     }
 
+    /// The least distances of interior nodes from the boundary, as they were generated.
+    pub fn clearance(&self) -> &Clearance {
+        &self.clearance
+    }
+
+    /// Where each boundary node lies along its edge, shape (n_boundary,): the arc length from the edge's first vertex as a
+    /// fraction of the edge; 0 at vertices. `None` for a cloud put together by [`Self::from_parts`].
+    pub fn edge_fractions(&self) -> Option<&[f64]> {
+        self.fractions.as_deref()
+    }
+
+    /// The background grid that the interior nodes come from; `None` where they do not come from one.
+    pub fn lattice(&self) -> Option<&Lattice> {
+        self.born.as_ref().map(|born| &born.lattice)
+    }
+
+    /// The site of every interior node, shape (n_interior,), as its number j·N_x + i on [`Self::lattice`].
+    ///
+    /// A node is nearer than half a spacing to its site along x and along y, and no two have the same.
+    pub fn sites(&self) -> Option<&[u32]> {
+        self.born.as_ref().map(|born| &*born.sites)
+    }
+
     /// Generated and deleted grid points by cause.
     pub fn census(&self) -> Census {
         self.census
@@ -148,7 +214,8 @@ impl Cloud {
         self.boundary.envelope().size()
     }
 
-    /// Checks the invariants: finite coordinates, a sound real boundary, interior nodes strictly inside.
+    /// Checks the invariants: finite coordinates, a sound real boundary, interior nodes strictly inside and clear of it,
+    /// each in the box of its own site.
     ///
     /// # Errors
     /// The first invariant that is broken, as [`CloudError`].
@@ -160,10 +227,18 @@ impl Cloud {
             let at = crate::generate::place_of(fault, &self.boundary);
             return Err(CloudError::BoundaryCrosses { at, remedy: "give the outline more nodes".into() });
         }
-        let locator = self.boundary.locator();
+        let index = self.boundary.segment_index();
         let interior = &self.xy[self.n_boundary()..];
-        if let Some(&at) = interior.iter().find(|&&p| locator.locate(p) != nmt_geom::Location::Inside) {
+        if let Some(&at) = interior.iter().find(|&&p| index.locate(p) != nmt_geom::Location::Inside) {
             return Err(CloudError::InteriorOutside { at });
+        }
+        if let Some(&at) = interior.iter().find(|&&p| !self.clearance.holds(p, &index)) {
+            return Err(CloudError::TooNear { at });
+        }
+        let Some(born) = &self.born else { return Ok(()) };
+        let in_order = born.sites.windows(2).all(|pair| pair[0] < pair[1]);
+        if !in_order || born.sites.len() != interior.len() || !born.all_within_boxes(interior) {
+            return Err(CloudError::OffSites);
         }
         Ok(())
     }

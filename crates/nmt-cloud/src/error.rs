@@ -68,6 +68,26 @@ pub enum CloudError {
         /// Where.
         at: Point,
     },
+    /// A node is nearer to the boundary than its cloud's clearance.
+    #[error("interior node at ({}, {}) is too near to the real boundary; remove it or lower the clearance", .at[0], .at[1])]
+    TooNear {
+        /// Where.
+        at: Point,
+    },
+    /// Interior nodes and the sites they come from do not belong together.
+    #[error("interior nodes are not each in the box of its own site; put the cloud together without sites")]
+    OffSites,
+    /// A cloud and a section that it was not generated from.
+    #[error("the cloud has {n_vertices} vertices and the section {vertices}; give the section it was generated from")]
+    OtherSection {
+        /// Vertices of the section, as many as its edges.
+        vertices: usize,
+        /// Vertices of the cloud.
+        n_vertices: usize,
+    },
+    /// A cloud that was put together from parts does not know the edges its nodes could slide along.
+    #[error("the cloud was not generated from a section; generate one to randomise it")]
+    NotGenerated,
     /// The boundary's loops are malformed.
     #[error(transparent)]
     Boundary(#[from] GeomError),

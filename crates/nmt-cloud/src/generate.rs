@@ -1,13 +1,12 @@
 //! Section and density in, cloud out: the paper's steps in a row (Sec. 4).
 
-use crate::boundary::{BoundaryNodes, boundary_nodes};
+use crate::boundary::{BoundaryNodes, boundary_nodes, slide};
 use crate::clearance::{Clearance, Sieve, sites_near};
-use crate::cloud::Cloud;
+use crate::cloud::{Born, Cloud, CloudParts};
 use crate::error::CloudError;
 use crate::irregular::Displacements;
 use crate::lattice::Lattice;
 use crate::section::{CloudParams, Section};
-use nmt_geom::point::sub;
 use nmt_geom::{Location, Point, RealBoundary, RegionFault, SegmentIndex, ring};
 
 /// Grid points that a cloud may have at most.
@@ -40,35 +39,136 @@ const MAX_DRAWS: usize = 8;
 /// ```
 pub fn generate(section: &Section, params: &CloudParams) -> Result<Cloud, CloudError> {
     let mut displacements = Displacements::new(params.seed);
-    let prepared = prepare(section, params, &mut displacements)?;
-    if let Some(fault) = prepared.boundary.faults().first() {
-        let at = place_of(fault, &prepared.boundary);
+    generate_with(section, params, |node, draw| displacements.draw(node, draw))
+}
+
+/// [`generate`] with random numbers of the caller's: `random(node, draw)` gives 2r − 1 and 2r′ − 1 of (10), each in
+/// [−1, 1), for a node of the finished cloud and its draw 0, 1, … 7.
+///
+/// An edge node takes the first number of its draw 0, an interior node both of as many draws as it needs. Asked for in
+/// order of the nodes first, then again for those that draw again; never for a regular cloud.
+///
+/// # Errors
+/// Those of [`generate`]; the densities that it advises are tried with the seed of `params`.
+pub fn generate_with(
+    section: &Section,
+    params: &CloudParams,
+    mut random: impl FnMut(usize, usize) -> [f64; 2],
+) -> Result<Cloud, CloudError> {
+    let random: &mut dyn FnMut(usize, usize) -> [f64; 2] = &mut random;
+    let Prepared { lattice, boundary: BoundaryNodes { boundary, n_vertices, fractions }, clearance } =
+        prepare(section, params, random)?;
+    if let Some(fault) = boundary.faults().first() {
+        let at = place_of(fault, &boundary);
         return Err(CloudError::BoundaryCrosses { at, remedy: density_that_does_not_cross(section, params) });
     }
-    let lattice = &prepared.lattice;
-    let sieve = Sieve::new(lattice, &prepared.boundary, &prepared.clearance);
+    let sieve = Sieve::new(&lattice, &boundary, &clearance);
     let census = sieve.census();
     if census.kept == 0 {
         return Err(CloudError::NoInterior { remedy: density_with_interior(section, params) });
     }
-    let mut interior: Vec<Point> = Vec::with_capacity(census.kept);
-    interior.extend(sieve.kept().map(|(i, j)| lattice.site(i, j)));
+    let n_boundary = boundary.xy().len();
+    let mut xy = Vec::with_capacity(n_boundary + census.kept);
+    xy.extend_from_slice(boundary.xy());
+    let mut sites = Vec::with_capacity(census.kept);
+    sieve.kept(|number, p| {
+        sites.push(number);
+        xy.push(p);
+    });
+    drop(sieve);
     if params.irregularity > 0.0 {
-        let sites: Vec<(usize, usize)> = sieve.kept().collect();
-        displace(&mut interior, &sites, &prepared, params.irregularity, &mut displacements);
+        let exposed = Exposed::of_sites(&lattice, &boundary, &clearance, params.irregularity);
+        let is_exposed = |k: usize| exposed.contains(sites[k]);
+        displace(&mut xy, &boundary, &clearance, lattice.spacing(), params.irregularity, is_exposed, random);
     }
-    Ok(Cloud::from_parts(prepared.boundary, prepared.n_vertices, interior, lattice.spacing(), census))
+    let spacing = lattice.spacing();
+    let born = Some(Born { lattice, sites });
+    let fractions = Some(fractions);
+    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census }))
+}
+
+/// Randomises an existing cloud; paper, Sec. 4.4, eqs (10)–(11).
+///
+/// Edge nodes slide along their edges by ±`irregularity` of the shorter of their two segments, in arc length; interior
+/// nodes move by up to `irregularity` of h_x and h_y to a place that is inside and clear of the boundary, drawn up to 8
+/// times, else they stay. Vertices stay. An interior node that the slid boundary has come too near to goes, and is counted
+/// under its cause in the census. `section` must be the one that the cloud was generated from.
+///
+/// # Errors
+/// [`CloudError::Parameter`] where `irregularity` is not in [0, 0.5), [`CloudError::OtherSection`] where the cloud's
+/// vertices are not the section's, [`CloudError::NotGenerated`] for one that came from no section,
+/// [`CloudError::BoundaryCrosses`] where the slid boundary would cross itself.
+///
+/// ```
+/// use nmt_cloud::{CloudParams, Section, generate, randomise};
+/// use nmt_curve::Outline;
+///
+/// let disc = Section::solid(Outline::circle([0.0, 0.0], 1.0));
+/// let regular = generate(&disc, &CloudParams { nodes: [21, 21], ..CloudParams::default() })?;
+/// let irregular = randomise(&disc, &regular, 0.3, 1)?;
+/// assert!(irregular.n_nodes() <= regular.n_nodes());
+/// assert_eq!(irregular.xy()[0], [1.0, 0.0]); // the vertex
+/// # Ok::<(), nmt_cloud::CloudError>(())
+/// ```
+pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64) -> Result<Cloud, CloudError> {
+    let range = "[0, 0.5)";
+    if !(0.0..0.5).contains(&irregularity) {
+        return Err(CloudError::Parameter { parameter: "irregularity", value: irregularity, range });
+    }
+    let mut displacements = Displacements::new(seed);
+    let random: &mut dyn FnMut(usize, usize) -> [f64; 2] = &mut |node, draw| displacements.draw(node, draw);
+    let (n_vertices, clearance, spacing) = (cloud.n_vertices(), *cloud.clearance(), cloud.spacing());
+    let fractions = cloud.edge_fractions().ok_or(CloudError::NotGenerated)?;
+    let slid = slide(section, cloud.boundary(), n_vertices, fractions, irregularity, random)?;
+    let BoundaryNodes { boundary, fractions, .. } = slid;
+    if let Some(fault) = boundary.faults().first() {
+        let remedy = "choose a smaller irregularity".into();
+        return Err(CloudError::BoundaryCrosses { at: place_of(fault, &boundary), remedy });
+    }
+    let index = boundary.segment_index();
+    let mut census = cloud.census();
+    let mut xy = boundary.xy().to_vec();
+    let mut sites = cloud.sites().map(|_| Vec::new());
+    for (k, &p) in cloud.xy()[cloud.n_boundary()..].iter().enumerate() {
+        let inside = index.locate(p) == Location::Inside;
+        if inside && clearance.holds(p, &index) {
+            xy.push(p);
+            if let (Some(kept), Some(all)) = (&mut sites, cloud.sites()) {
+                kept.push(all[k]);
+            }
+            continue;
+        }
+        let edge_alone = Clearance { node: 0.0, ..clearance };
+        let cause = match inside {
+            false => &mut census.outside,
+            true if !edge_alone.holds(p, &index) => &mut census.near_edge,
+            true => &mut census.near_node,
+        };
+        *cause += 1;
+        census.kept -= 1;
+    }
+    if xy.len() == boundary.xy().len() {
+        return Err(CloudError::NoInterior { remedy: "choose a smaller irregularity".into() });
+    }
+    displace(&mut xy, &boundary, &clearance, spacing, irregularity, |_| true, random);
+    let born = cloud.lattice().zip(sites).map(|(lattice, sites)| Born { lattice: *lattice, sites });
+    let born = born.filter(|born| born.all_within_boxes(&xy[boundary.xy().len()..]));
+    let fractions = Some(fractions);
+    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census }))
 }
 
 /// Lattice, real boundary and clearances: all that the interior nodes depend on.
 struct Prepared {
     lattice: Lattice,
-    boundary: RealBoundary,
-    n_vertices: usize,
+    boundary: BoundaryNodes,
     clearance: Clearance,
 }
 
-fn prepare(section: &Section, params: &CloudParams, displacements: &mut Displacements) -> Result<Prepared, CloudError> {
+fn prepare(
+    section: &Section,
+    params: &CloudParams,
+    random: &mut dyn FnMut(usize, usize) -> [f64; 2],
+) -> Result<Prepared, CloudError> {
     params.check()?;
     let [n_x, n_y] = params.nodes.map(|n| n as f64);
     if n_x * n_y > MAX_GRID_POINTS {
@@ -81,49 +181,70 @@ fn prepare(section: &Section, params: &CloudParams, displacements: &mut Displace
         return Err(CloudError::NoExtent { width, height });
     }
     let lattice = Lattice::new(envelope, params.nodes);
-    let BoundaryNodes { boundary, n_vertices } = boundary_nodes(section, params, displacements)?;
-    let clearance = Clearance::new(&lattice, envelope.size(), params.edge_clearance, params.node_clearance);
-    Ok(Prepared { lattice, boundary, n_vertices, clearance })
+    let boundary = boundary_nodes(section, params, random)?;
+    let CloudParams { clearance, edge_clearance, node_clearance, .. } = *params;
+    let clearance = Clearance::new(&lattice, envelope.size(), clearance, edge_clearance, node_clearance);
+    Ok(Prepared { lattice, boundary, clearance })
+}
+
+/// Sites so near to the boundary that a displacement could bring them too close to it, or across it; a bit each.
+struct Exposed(Vec<u64>);
+
+impl Exposed {
+    fn of_sites(lattice: &Lattice, boundary: &RealBoundary, clearance: &Clearance, amplitude: f64) -> Self {
+        let [h_x, h_y] = lattice.spacing();
+        let [s_x, s_y] = clearance.stretch;
+        let reach = clearance.reach() + amplitude * (s_x * h_x).hypot(s_y * h_y);
+        let mut exposed = Self(vec![0; lattice.shape[0] * lattice.shape[1] / 64 + 1]);
+        for [a, b] in boundary.all_ends() {
+            sites_near(lattice, a, b, clearance, reach * (1.0 + 1e-9), |i, j| exposed.add(lattice.number(i, j)));
+        }
+        exposed
+    }
+
+    fn add(&mut self, site: u32) {
+        self.0[site as usize / 64] |= 1 << (site % 64);
+    }
+
+    fn contains(&self, site: u32) -> bool {
+        self.0[site as usize / 64] >> (site % 64) & 1 == 1
+    }
 }
 
 /// Moves each interior node as (10) says; a place that is not clear of the boundary is drawn again.
+///
+/// `is_exposed(k)`: whether interior node k could come too near to the boundary at all.
 fn displace(
-    interior: &mut [Point],
-    sites: &[(usize, usize)],
-    prepared: &Prepared,
+    xy: &mut [Point],
+    boundary: &RealBoundary,
+    clearance: &Clearance,
+    [h_x, h_y]: [f64; 2],
     amplitude: f64,
-    displacements: &mut Displacements,
+    is_exposed: impl Fn(usize) -> bool,
+    random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) {
-    let Prepared { lattice, boundary, clearance, .. } = prepared;
-    let [h_x, h_y] = lattice.spacing();
     let n_boundary = boundary.xy().len();
-    // Only sites this near to the boundary can be moved too close to it, or across it.
-    let reach = clearance.reach() + amplitude * h_x.hypot(h_y);
-    let columns = lattice.shape[0];
-    let mut exposed = vec![false; columns * lattice.shape[1]];
-    for [a, b] in boundary.all_ends() {
-        sites_near(lattice, a, b, reach * (1.0 + 1e-9), |i, j| exposed[j * columns + i] = true);
-    }
     let index = boundary.segment_index();
-    let mut place = |k: usize, site: Point, draw: usize| {
-        let [r, s] = displacements.draw(n_boundary + k, draw);
-        [site[0] + h_x * amplitude * r, site[1] + h_y * amplitude * s]
+    let (dx, dy) = (h_x * amplitude, h_y * amplitude);
+    let mut place = |node: usize, site: Point, draw: usize| {
+        let [r, s] = random(node, draw);
+        [site[0] + dx * r, site[1] + dy * s]
     };
     let mut redraw = Vec::new();
-    for (k, &(i, j)) in sites.iter().enumerate() {
-        let new = place(k, interior[k], 0);
-        if exposed[j * columns + i] && !may_move(interior[k], new, clearance, &index) {
-            redraw.push(k);
+    for (k, p) in xy[n_boundary..].iter_mut().enumerate() {
+        let new = place(n_boundary + k, *p, 0);
+        if is_exposed(k) && !may_move(*p, new, clearance, &index) {
+            redraw.push(n_boundary + k);
         } else {
-            interior[k] = new;
+            *p = new;
         }
     }
     for draw in 1..MAX_DRAWS {
-        redraw.retain(|&k| {
-            let new = place(k, interior[k], draw);
-            let moves = may_move(interior[k], new, clearance, &index);
+        redraw.retain(|&node| {
+            let new = place(node, xy[node], draw);
+            let moves = may_move(xy[node], new, clearance, &index);
             if moves {
-                interior[k] = new;
+                xy[node] = new;
             }
             !moves
         });
@@ -140,14 +261,12 @@ fn may_move(site: Point, to: Point, clearance: &Clearance, index: &SegmentIndex)
 /// A corner exactly on the line belongs to its left side, so that each passage counts once.
 fn crosses_oddly(p: Point, q: Point, index: &SegmentIndex) -> bool {
     let left = |a: Point, b: Point, r: Point| nmt_geom::side(a, b, r) != std::cmp::Ordering::Less;
-    let mut crossed = std::collections::BTreeSet::new();
+    let mut odd = false;
     index.candidates(p, q, 0.0, |k| {
         let [a, b] = index.segment(k);
-        if left(p, q, a) != left(p, q, b) && left(a, b, p) != left(a, b, q) {
-            crossed.insert(k);
-        }
+        odd ^= left(p, q, a) != left(p, q, b) && left(a, b, p) != left(a, b, q);
     });
-    crossed.len() % 2 == 1
+    odd
 }
 
 /// Where a fault of the polygon is, for a message.
@@ -184,10 +303,14 @@ fn advise(params: &CloudParams, does: impl Fn(&CloudParams) -> bool) -> Option<[
     }
 }
 
+fn prepare_seeded(section: &Section, params: &CloudParams) -> Result<Prepared, CloudError> {
+    let mut displacements = Displacements::new(params.seed);
+    prepare(section, params, &mut |node, draw| displacements.draw(node, draw))
+}
+
 fn density_that_does_not_cross(section: &Section, params: &CloudParams) -> String {
     let does = |finer: &CloudParams| {
-        prepare(section, finer, &mut Displacements::new(finer.seed))
-            .is_ok_and(|prepared| prepared.boundary.faults().is_empty())
+        prepare_seeded(section, finer).is_ok_and(|prepared| prepared.boundary.boundary.faults().is_empty())
     };
     match advise(params, does) {
         Some([n_x, n_y]) => format!("nodes = [{n_x}, {n_y}] would do"),
@@ -197,18 +320,9 @@ fn density_that_does_not_cross(section: &Section, params: &CloudParams) -> Strin
 
 fn density_with_interior(section: &Section, params: &CloudParams) -> String {
     let does = |finer: &CloudParams| {
-        prepare(section, finer, &mut Displacements::new(finer.seed)).is_ok_and(|prepared| {
-            prepared.boundary.faults().is_empty() && {
-                let locator = prepared.boundary.locator();
-                let index = prepared.boundary.segment_index();
-                let [columns, rows] = prepared.lattice.interior_shape();
-                (1..=rows).any(|j| {
-                    (1..=columns).any(|i| {
-                        let p = prepared.lattice.site(i, j);
-                        locator.locate(p) == Location::Inside && prepared.clearance.holds(p, &index)
-                    })
-                })
-            }
+        prepare_seeded(section, finer).is_ok_and(|Prepared { lattice, boundary, clearance }| {
+            boundary.boundary.faults().is_empty()
+                && Sieve::new(&lattice, &boundary.boundary, &clearance).census().kept > 0
         })
     };
     match advise(params, does) {
@@ -217,17 +331,4 @@ fn density_with_interior(section: &Section, params: &CloudParams) -> String {
             "a grid of 10⁶ points in this proportion gives none either: choose more nodes across the thin parts".into()
         }
     }
-}
-
-/// Fraction of the way that node `k` of `n` nodes lies along an edge.
-pub(crate) fn evenly(k: usize, n_segments: usize) -> f64 {
-    k as f64 / n_segments as f64
-}
-
-/// The point at fraction `t` of a straight edge; paper, eq. (1).
-///
-/// Written with the difference, so that nodes of a horizontal or vertical edge share a coordinate to the bit.
-pub(crate) fn on_line(from: Point, to: Point, t: f64) -> Point {
-    let v = sub(to, from);
-    [from[0] + v[0] * t, from[1] + v[1] * t]
 }

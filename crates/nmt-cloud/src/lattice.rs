@@ -38,6 +38,19 @@ impl Lattice {
         [self.coordinate(0, i), self.coordinate(1, j)]
     }
 
+    /// Number of site (i, j): j·N_x + i.
+    #[inline]
+    pub fn number(&self, i: usize, j: usize) -> u32 {
+        (j * self.shape[0] + i) as u32
+    }
+
+    /// The (i, j) of a site's number.
+    #[inline]
+    pub fn site_of(&self, number: u32) -> [usize; 2] {
+        let columns = self.shape[0] as u32;
+        [(number % columns) as usize, (number / columns) as usize]
+    }
+
     /// Number of interior sites along each axis, without the outermost: N_x − 2, N_y − 2.
     pub fn interior_shape(&self) -> [usize; 2] {
         self.shape.map(|n| n.saturating_sub(2))

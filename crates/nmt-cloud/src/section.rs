@@ -1,7 +1,7 @@
 //! What a cloud is made from: the outlines of a section, and how dense and how irregular it shall be.
 
 use crate::error::CloudError;
-use nmt_curve::Outline;
+use nmt_curve::{Division, Outline};
 
 /// A main contour with holes; checked outlines, the holes inside and apart.
 #[derive(Clone, Debug)]
@@ -29,6 +29,31 @@ impl Section {
     }
 }
 
+/// What distances of interior nodes from the boundary are measured in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ClearanceUnit {
+    /// max(h_x, h_y), as in (8) and (9); the default.
+    ///
+    /// Where the spacings differ by more than 2 it clears whole rows of nodes beside the boundary.
+    #[default]
+    Max,
+    /// x in units of h_x, y in units of h_y: a cloud of unequal spacings is cleared like a square one that is stretched.
+    Scaled,
+}
+
+impl ClearanceUnit {
+    /// Both units.
+    pub const ALL: [Self; 2] = [Self::Max, Self::Scaled];
+
+    /// The word of problem files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Max => "max",
+            Self::Scaled => "scaled",
+        }
+    }
+}
+
 /// Density and irregularity of a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudParams {
@@ -36,13 +61,17 @@ pub struct CloudParams {
     pub nodes: [usize; 2],
     /// Densities of each hole relative to its own envelope; by default the contour's N_x/W and N_y/H hold.
     pub hole_nodes: Vec<Option<[usize; 2]>>,
+    /// How nodes are spread along curved edges \[D3\]; by arc length by default.
+    pub division: Division,
     /// Amp of (10), in [0, 0.5); 0, the default, is a regular cloud.
     pub irregularity: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Least distance of interior nodes from the real boundary in units of max(h_x, h_y), 1/3 by default (8).
+    /// What the two clearances are measured in; max(h_x, h_y), the paper's, by default.
+    pub clearance: ClearanceUnit,
+    /// Least distance of interior nodes from the real boundary, 1/3 by default (8).
     pub edge_clearance: f64,
-    /// Least distance of interior nodes from boundary nodes in units of max(h_x, h_y), 1/2 by default (9).
+    /// Least distance of interior nodes from boundary nodes, 1/2 by default (9).
     pub node_clearance: f64,
 }
 
@@ -54,8 +83,10 @@ impl Default for CloudParams {
         Self {
             nodes: [11, 11],
             hole_nodes: Vec::new(),
+            division: Division::Arc,
             irregularity: 0.0,
             seed: DEFAULT_SEED,
+            clearance: ClearanceUnit::Max,
             edge_clearance: 1.0 / 3.0,
             node_clearance: 0.5,
         }

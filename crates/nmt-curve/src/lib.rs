@@ -8,7 +8,7 @@
 //! * how long is it? [`arc_length`], paper (3)–(4) \[D2\]
 //! * where is the point at a given arc length? [`ArcTable`]
 //! * how many nodes does it get? [`node_count`], paper (2) \[D4\]
-//! * where do they lie? [`divide()`] \[D3\]
+//! * where do they lie? [`divide()`], [`divide_by_chords`] \[D3\]
 //!
 //! All tolerances are relative: a section in micrometres and the same in kilometres get the same nodes.
 //!
@@ -48,7 +48,7 @@ pub use arc_length::{ArcLength, ArcLengthParams, arc_length};
 pub use arc_table::ArcTable;
 pub use count::{CLOSED_NODES_LEAST, CURVED_NODES_LEAST, STRAIGHT_NODES_LEAST, node_count};
 pub use curve::{Curve, Turn};
-pub use divide::{MAX_NODES_ON_EDGE, divide};
+pub use divide::{Division, EdgeNodes, MAX_NODES_ON_EDGE, divide, divide_by_chords};
 pub use error::{CurveEnd, CurveError};
 pub use expression::{Expression, ExpressionError, Jet, MAX_FORMULA_BYTES, MAX_FORMULA_NESTING};
 pub use outline::{Outline, OutlineEdge, OutlineFault};

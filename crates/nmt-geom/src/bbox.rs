@@ -44,6 +44,15 @@ impl Bbox {
         both
     }
 
+    /// The envelope with `margin` more on either side along x and along y.
+    #[inline]
+    pub fn grown(self, margin: [f64; 2]) -> Self {
+        Self {
+            min: [self.min[0] - margin[0], self.min[1] - margin[1]],
+            max: [self.max[0] + margin[0], self.max[1] + margin[1]],
+        }
+    }
+
     /// W, the extent along x.
     pub fn width(&self) -> f64 {
         self.max[0] - self.min[0]
@@ -60,6 +69,7 @@ impl Bbox {
     }
 
     /// True where the two envelopes, each grown by `margin`, share a point.
+    #[inline]
     pub fn overlaps(&self, other: &Self, margin: f64) -> bool {
         (0..2).all(|d| self.min[d] - margin <= other.max[d] && other.min[d] - margin <= self.max[d])
     }

@@ -1,9 +1,9 @@
-//! Inside, outside or on the boundary: ray casting with exact predicates, on slabs of y.
+//! Inside, outside or on the boundary: ray casting with exact predicates.
 
-use crate::bbox::Bbox;
 use crate::point::Point;
 use crate::predicates::side;
 use crate::segment;
+use crate::segment_index::SegmentIndex;
 use std::cmp::Ordering;
 
 /// Where a point lies.
@@ -17,57 +17,17 @@ pub enum Location {
     Outside,
 }
 
-/// Segments per slab of y that the index aims at; more makes look-ups slower, fewer makes the index larger.
-const ENTRIES_PER_SEGMENT: f64 = 4.0;
-
-/// Answers "where is this point?" for the even–odd region between closed polygons, in O(segments at that height).
+/// Answers "where is this point?" for the even–odd region between closed polygons, in O(log n) and what the ray from the
+/// point towards +x crosses.
 #[derive(Clone, Debug)]
 pub struct Locator {
-    segments: Vec<[Point; 2]>,
-    envelope: Bbox,
-    slab_height: f64,
-    starts: Vec<u32>,  // first entry of each slab, shape (n_slabs + 1,)
-    entries: Vec<u32>, // segments by slab
+    index: SegmentIndex,
 }
 
 impl Locator {
     /// Indexes the sides of closed polygons.
     pub fn new(segments: impl IntoIterator<Item = [Point; 2]>) -> Self {
-        let segments: Vec<_> = segments.into_iter().collect();
-        let envelope = Bbox::of(segments.iter().flatten().copied());
-        let rise: f64 = segments.iter().map(|[a, b]| (b[1] - a[1]).abs()).sum();
-        let height = envelope.height();
-        // A slab a segment on average, unless tall segments would fill too many of them.
-        let wanted = (ENTRIES_PER_SEGMENT * segments.len() as f64 * height / rise).min(segments.len() as f64);
-        let n_slabs = if wanted.is_finite() && wanted >= 1.0 { wanted as usize } else { 1 };
-        let mut locator = Self {
-            segments,
-            envelope,
-            slab_height: height / n_slabs as f64,
-            starts: vec![0; n_slabs + 1],
-            entries: Vec::new(),
-        };
-        let spans: Vec<_> = locator
-            .segments
-            .iter()
-            .map(|[a, b]| locator.slab(a[1].min(b[1]), n_slabs)..=locator.slab(a[1].max(b[1]), n_slabs))
-            .collect();
-        spans.iter().cloned().flatten().for_each(|slab| locator.starts[slab + 1] += 1);
-        (0..n_slabs).for_each(|slab| locator.starts[slab + 1] += locator.starts[slab]);
-        let mut next = locator.starts.clone();
-        locator.entries = vec![0; locator.starts[n_slabs] as usize];
-        for (k, span) in spans.into_iter().enumerate() {
-            for slab in span {
-                locator.entries[next[slab] as usize] = k as u32;
-                next[slab] += 1;
-            }
-        }
-        locator
-    }
-
-    fn slab(&self, y: f64, n_slabs: usize) -> usize {
-        let slab = (y - self.envelope.min[1]) / self.slab_height;
-        if slab > 0.0 { (slab as usize).min(n_slabs - 1) } else { 0 }
+        Self { index: SegmentIndex::new(segments) }
     }
 
     /// Where `p` lies; exact for the coordinates given.
@@ -80,34 +40,20 @@ impl Locator {
     /// assert_eq!(locator.locate([0.5, 1.0 - 1e-16]), Location::Inside);
     /// ```
     pub fn locate(&self, p: Point) -> Location {
-        if !self.envelope.contains(p, 0.0) {
-            return Location::Outside;
-        }
-        let slab = self.slab(p[1], self.starts.len() - 1);
-        let entries = &self.entries[self.starts[slab] as usize..self.starts[slab + 1] as usize];
-        let mut inside = false;
-        for &k in entries {
-            let [a, b] = self.segments[k as usize];
-            match ray_crossing(p, a, b) {
-                Crossing::On => return Location::OnBoundary,
-                Crossing::Right => inside = !inside,
-                Crossing::None => {}
-            }
-        }
-        if inside { Location::Inside } else { Location::Outside }
+        self.index.locate(p)
     }
 }
 
 /// How the ray from a point towards +x meets a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Crossing {
+pub(crate) enum Crossing {
     None,
     Right,
     On,
 }
 
 /// Half-open in y, so that a ray through a corner counts it once; paper, Sec. 4.3 (`internal_point`).
-fn ray_crossing(p: Point, a: Point, b: Point) -> Crossing {
+pub(crate) fn ray_crossing(p: Point, a: Point, b: Point) -> Crossing {
     let spans = (a[1] > p[1]) != (b[1] > p[1]);
     if !spans {
         // Its ends may still touch the ray's height: then only lying on it matters.
@@ -169,7 +115,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_slabs_agree_with_a_plain_loop_over_all_sides(
+        fn the_index_agrees_with_a_plain_loop_over_all_sides(
             corners in prop::collection::vec(prop::array::uniform2(0i32..8), 3..12),
             p in prop::array::uniform2(0i32..8),
         ) {

@@ -1,58 +1,51 @@
-//! A grid of buckets over segments: which are near, which are crossed.
+//! A tree of boxes over segments: which are near, which are crossed, where a point lies.
 
 use crate::bbox::Bbox;
+use crate::locate::{Crossing, Location, ray_crossing};
 use crate::point::Point;
 use crate::segment;
 
-/// Buckets a segment on average: finer finds fewer false candidates, coarser visits fewer buckets.
-const BUCKETS_PER_SEGMENT: f64 = 2.0;
+/// Segments in a leaf: more tests segments in vain, fewer tests boxes in vain.
+const LEAF: usize = 4;
 
-/// Bucket entries a segment at most, so that a few segments much longer than the rest cannot fill the memory.
-const MAX_ENTRIES_PER_SEGMENT: f64 = 16.0;
+/// Boxes are looked up with this much room, as a fraction of the coordinates: a segment exactly at a distance that is
+/// asked for must not be missed by rounding.
+const ROOM_REL: f64 = 1.0e-14;
 
-/// Finds the segments near a point or a line in O(1) for segments of about equal length.
+/// Finds the segments near a point or a line in O(log n), whatever their lengths and however unevenly they lie.
 #[derive(Clone, Debug)]
 pub struct SegmentIndex {
-    segments: Vec<[Point; 2]>,
+    segments: Vec<[Point; 2]>, // by number
+    order: Vec<u32>,           // numbers, leaf by leaf
+    boxes: Vec<TreeBox>,       // depth first: a box, what is in its first half, what is in its second half
     envelope: Bbox,
-    cell: [f64; 2],
-    shape: [usize; 2],
-    starts: Vec<u32>,
-    entries: Vec<u32>,
+    room: f64,
+}
+
+/// A box of the tree.
+#[derive(Clone, Copy, Debug)]
+struct TreeBox {
+    envelope: Bbox,
+    after: u32, // the box to go on with where this one is passed over
+    first: u32, // in `order`
+    count: u32, // segments in a leaf, 0 in an inner box
 }
 
 impl SegmentIndex {
-    /// Indexes `segments`; they keep their numbers 0, 1, ….
+    /// Indexes `segments`; they keep their numbers 0, 1, …. O(n log n).
     pub fn new(segments: impl IntoIterator<Item = [Point; 2]>) -> Self {
         let segments: Vec<_> = segments.into_iter().collect();
         let envelope = Bbox::of(segments.iter().flatten().copied());
-        let (w, h) = (envelope.width().max(0.0), envelope.height().max(0.0));
-        let n = segments.len().max(1) as f64;
-        // Square buckets of about the segments' mean length, but no more of them, and no more entries in them, than the
-        // segments can pay for.
-        let total: f64 = segments.iter().map(|[a, b]| crate::point::distance(*a, *b)).sum();
-        let by_count = (w * h / (BUCKETS_PER_SEGMENT * n)).sqrt().max(w.max(h) / (BUCKETS_PER_SEGMENT * n));
-        let by_entries = total / (MAX_ENTRIES_PER_SEGMENT * n);
-        let side = (total / n).max(by_count).max(by_entries);
-        let side = if side.is_finite() && side > 0.0 { side } else { 1.0 };
-        let count = |extent: f64| ((extent / side).ceil() as usize).clamp(1, (BUCKETS_PER_SEGMENT * n) as usize + 1);
-        let shape = [count(w), count(h)];
-        let cell = [nonzero(w / shape[0] as f64), nonzero(h / shape[1] as f64)];
-        let mut index =
-            Self { segments, envelope, cell, shape, starts: vec![0; shape[0] * shape[1] + 1], entries: vec![] };
-        let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(2 * index.segments.len());
-        for (k, [a, b]) in index.segments.iter().enumerate() {
-            index.walk(*a, *b, 0.0, |bucket| pairs.push((bucket as u32, k as u32)));
+        let magnitude = envelope.min.iter().chain(&envelope.max).fold(0.0f64, |most, c| most.max(c.abs()));
+        let mut order: Vec<u32> = (0..segments.len() as u32).collect();
+        let mut boxes = Vec::with_capacity(2 * segments.len() / LEAF + 1);
+        if !segments.is_empty() {
+            let middles: Vec<Point> =
+                segments.iter().map(|[a, b]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]).collect();
+            split(&segments, &middles, &mut order, 0, &mut boxes);
         }
-        pairs.iter().for_each(|&(bucket, _)| index.starts[bucket as usize + 1] += 1);
-        (0..shape[0] * shape[1]).for_each(|bucket| index.starts[bucket + 1] += index.starts[bucket]);
-        let mut next = index.starts.clone();
-        index.entries = vec![0; pairs.len()];
-        for (bucket, k) in pairs {
-            index.entries[next[bucket as usize] as usize] = k;
-            next[bucket as usize] += 1;
-        }
-        index
+        let room = if magnitude.is_finite() { ROOM_REL * magnitude } else { 0.0 };
+        Self { segments, order, boxes, envelope, room }
     }
 
     /// Number of segments.
@@ -70,78 +63,97 @@ impl SegmentIndex {
         self.segments[k]
     }
 
-    fn column(&self, v: f64, d: usize) -> usize {
-        let c = (v - self.envelope.min[d]) / self.cell[d];
-        if c > 0.0 { (c as usize).min(self.shape[d] - 1) } else { 0 }
+    /// Envelope of all segments.
+    pub fn envelope(&self) -> Bbox {
+        self.envelope
     }
 
-    /// Calls `visit` with every bucket that the segment `a b`, widened by `margin`, may touch: row by row, the columns
-    /// between its entry and its exit.
-    fn walk(&self, a: Point, b: Point, margin: f64, mut visit: impl FnMut(usize)) {
-        let (low, high) = if a[1] <= b[1] { (a, b) } else { (b, a) };
-        let rows = self.column(low[1] - margin, 1)..=self.column(high[1] + margin, 1);
-        let slope = (high[0] - low[0]) / (high[1] - low[1]);
-        // Rounding must not lose a bucket: widen by a hair of the cell.
-        let slack = margin + 1e-9 * self.cell[0];
-        for row in rows {
-            let floor = self.envelope.min[1] + row as f64 * self.cell[1];
-            let (y0, y1) = (floor - slack, floor + self.cell[1] + slack);
-            let x_at = |y: f64| {
-                let y = y.clamp(low[1], high[1]);
-                if slope.is_finite() { low[0] + (y - low[1]) * slope } else { low[0] }
-            };
-            let (mut x0, mut x1) = (x_at(y0), x_at(y1));
-            if !slope.is_finite() {
-                (x0, x1) = (a[0], b[0]);
+    /// True where `holds` does for one of the segments whose boxes share a point with `window`; it is asked until then.
+    #[inline]
+    pub fn any_in(&self, window: &Bbox, mut holds: impl FnMut(usize) -> bool) -> bool {
+        self.any_in_boxes(|b| b.overlaps(window, self.room), |k| holds(k))
+    }
+
+    #[inline]
+    fn any_in_boxes(&self, enter: impl Fn(&Bbox) -> bool, mut holds: impl FnMut(usize) -> bool) -> bool {
+        let mut at = 0;
+        while let Some(b) = self.boxes.get(at) {
+            if !enter(&b.envelope) {
+                at = b.after as usize;
+                continue;
             }
-            let columns = self.column(x0.min(x1) - slack, 0)..=self.column(x0.max(x1) + slack, 0);
-            columns.for_each(|column| visit(row * self.shape[0] + column));
+            let leaf = b.first as usize..(b.first + b.count) as usize;
+            if self.order[leaf].iter().any(|&k| holds(k as usize)) {
+                return true;
+            }
+            at += 1;
         }
+        false
     }
 
-    fn bucket(&self, bucket: usize) -> &[u32] {
-        &self.entries[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
-    }
-
-    /// Calls `visit` with every segment whose buckets meet the envelope of `a` and `b` grown by `margin`; a segment can
-    /// come more than once.
+    /// Calls `visit` with every segment whose box meets the envelope of `a` and `b` grown by `margin`, once each.
+    #[inline]
     pub fn candidates(&self, a: Point, b: Point, margin: f64, mut visit: impl FnMut(usize)) {
-        if !self.envelope.overlaps(&Bbox::of([a, b]), margin) {
-            return;
-        }
-        self.walk(a, b, margin, |bucket| self.bucket(bucket).iter().for_each(|&k| visit(k as usize)));
+        self.any_in(&Bbox::of([a, b]).grown([margin, margin]), |k| {
+            visit(k);
+            false
+        });
     }
 
     /// True where a segment passes nearer to `p` than `radius`.
     pub fn any_within(&self, p: Point, radius: f64) -> bool {
-        let mut found = false;
-        self.candidates(p, p, radius, |k| {
+        self.any_in(&Bbox::of([p]).grown([radius, radius]), |k| {
             let [a, b] = self.segments[k];
-            found = found || segment::distance_to(p, a, b) < radius;
-        });
-        found
+            segment::distance_to(p, a, b) < radius
+        })
     }
 
     /// True where a segment is properly crossed by `p q`, each pair of ends on opposite sides by more than `margin`.
     pub fn crosses(&self, p: Point, q: Point, margin: f64) -> bool {
-        let mut found = false;
-        self.candidates(p, q, 0.0, |k| {
+        self.any_in(&Bbox::of([p, q]), |k| {
             let [a, b] = self.segments[k];
-            found = found || segment::cross_properly(p, q, a, b, margin);
-        });
-        found
+            segment::cross_properly(p, q, a, b, margin)
+        })
     }
 
-    /// Every pair of segments that share a bucket within `margin`, each once and in order: candidates for meeting.
+    /// Where `p` lies in the even–odd region between the segments, which must form closed polygons; exact.
+    ///
+    /// Paper, Sec. 4.3 (`internal_point`), with ties settled by exact predicates.
+    pub fn locate(&self, p: Point) -> Location {
+        let mut inside = false;
+        let on = self.crossed_by_ray(p, |crossing, _| {
+            inside ^= crossing == Crossing::Right;
+            crossing == Crossing::On
+        });
+        if on {
+            Location::OnBoundary
+        } else if inside {
+            Location::Inside
+        } else {
+            Location::Outside
+        }
+    }
+
+    /// Asks `stop` about every segment that the ray from `p` towards +x may cross, until it holds.
+    pub(crate) fn crossed_by_ray(&self, p: Point, mut stop: impl FnMut(Crossing, usize) -> bool) -> bool {
+        let meets = |b: &Bbox| b.min[1] <= p[1] && p[1] <= b.max[1] && p[0] <= b.max[0];
+        self.any_in_boxes(meets, |k| {
+            let [a, b] = self.segments[k];
+            stop(ray_crossing(p, a, b), k)
+        })
+    }
+
+    /// Every pair of segments whose boxes meet within `margin`, each once and in order: candidates for meeting.
     pub fn close_pairs(&self, margin: f64) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
-        let mut seen = vec![usize::MAX; self.segments.len()];
         for (k, [a, b]) in self.segments.iter().enumerate() {
-            self.candidates(*a, *b, margin, |other| {
-                if other > k && seen[other] != k {
-                    seen[other] = k;
+            let own = Bbox::of([*a, *b]).grown([margin, margin]);
+            self.any_in(&own, |other| {
+                let [c, d] = self.segments[other];
+                if other > k && own.overlaps(&Bbox::of([c, d]), self.room) {
                     pairs.push([k, other]);
                 }
+                false
             });
         }
         pairs.sort_unstable();
@@ -149,8 +161,26 @@ impl SegmentIndex {
     }
 }
 
-fn nonzero(v: f64) -> f64 {
-    if v > 0.0 { v } else { 1.0 }
+/// Builds the boxes of `order`, whose first element is number `first` of the whole; halves along the longer extent of the
+/// middles, ties by number, so that the tree is balanced whatever the segments.
+fn split(segments: &[[Point; 2]], middles: &[Point], order: &mut [u32], first: usize, boxes: &mut Vec<TreeBox>) {
+    let envelope = Bbox::of(order.iter().flat_map(|&k| segments[k as usize]));
+    let here = boxes.len();
+    let count = if order.len() <= LEAF { order.len() as u32 } else { 0 };
+    boxes.push(TreeBox { envelope, after: 0, first: first as u32, count });
+    if count == 0 {
+        let spread = Bbox::of(order.iter().map(|&k| middles[k as usize]));
+        let d = usize::from(spread.height() > spread.width());
+        // Whole leaves on the left.
+        let half = (order.len() / 2).next_multiple_of(LEAF).min(order.len() - 1);
+        order.select_nth_unstable_by(half, |&i, &j| {
+            middles[i as usize][d].total_cmp(&middles[j as usize][d]).then(i.cmp(&j))
+        });
+        let (left, right) = order.split_at_mut(half);
+        split(segments, middles, left, first, boxes);
+        split(segments, middles, right, first + half, boxes);
+    }
+    boxes[here].after = boxes.len() as u32;
 }
 
 #[cfg(test)]
@@ -189,6 +219,34 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn segments_of_very_different_lengths_are_found_without_looking_at_many() {
+        // 10⁴ segments around a hole of 1e-6 of the size, and a comb of 10⁴ long teeth.
+        let n = 10_000;
+        let corner = |k: usize| {
+            let t = std::f64::consts::TAU * k as f64 / n as f64;
+            [0.5 + 1e-6 * t.cos(), 0.5 + 1e-6 * t.sin()]
+        };
+        let tooth = |k: usize| [[1.0 + k as f64 / n as f64, 0.0], [1.0 + k as f64 / n as f64, 1.0]];
+        let index = SegmentIndex::new((0..n).map(|k| [corner(k), corner(k + 1)]).chain((0..n).map(tooth)));
+        let mut looked_at = 0;
+        for k in 0..n {
+            index.candidates(corner(k), corner(k), 1e-10, |_| looked_at += 1);
+            let p = [tooth(k)[0][0], 0.3];
+            index.candidates(p, p, 1e-5, |_| looked_at += 1);
+        }
+        assert!(looked_at < 12 * 2 * n, "{looked_at}"); // at most three leaves each
+        assert!(index.any_within([0.5, 0.5 + 2e-6], 1.1e-6) && !index.any_within([0.5, 0.5 + 2e-6], 0.9e-6));
+        assert!(index.close_pairs(0.0).len() < 2 * n);
+    }
+
+    #[test]
+    fn no_segments_meet_nothing() {
+        let none = SegmentIndex::new([]);
+        assert!(none.is_empty() && !none.any_within([0.0, 0.0], 1.0) && !none.crosses([0.0, 0.0], [1.0, 1.0], 0.0));
+        assert_eq!(none.locate([0.0, 0.0]), Location::Outside);
     }
 
     #[test]

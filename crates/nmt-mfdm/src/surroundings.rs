@@ -28,17 +28,21 @@ const MAX_STAR_FACTOR: f64 = 4.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     stretch: [f64; 2],
-    ratio: f64, // of the spacings, at least 1
+    ratio: f64, // of the spacings as stretched, at least 1
 }
 
 impl Metric {
-    /// The metric of a cloud: stretched where the ratio of its spacings is between 1.25 and 2.
+    /// The metric of a cloud: stretched where the ratio of its spacings is between 1.25 and 2, and beyond where its
+    /// clearances are scaled, so that no strip along the boundary is bare.
     pub fn of(cloud: &Cloud) -> Self {
         let h = cloud.max_spacing();
         let stretch = cloud.spacing().map(|own| if own > 0.0 { h / own } else { 1.0 });
         let ratio = stretch[0].max(stretch[1]);
-        let is_stretched = above(ratio, EQUAL_SPACINGS) && !above(ratio, STRETCHABLE);
-        Self { stretch: if is_stretched { stretch } else { [1.0, 1.0] }, ratio }
+        let scaled = cloud.clearance().stretch != [1.0; 2];
+        if above(ratio, EQUAL_SPACINGS) && (scaled || !above(ratio, STRETCHABLE)) {
+            return Self { stretch, ratio: 1.0 };
+        }
+        Self { stretch: [1.0, 1.0], ratio }
     }
 
     /// Factors of x and y, each at least 1.
@@ -119,7 +123,7 @@ impl<'a> Surroundings<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nmt_cloud::{CloudParams, Section, generate};
+    use nmt_cloud::{ClearanceUnit, CloudParams, Section, generate};
     use nmt_curve::Outline;
 
     #[test]
@@ -134,5 +138,8 @@ mod tests {
         assert_eq!(metric([41, 41]), [1.0, 2.0]);
         assert_eq!(metric([21, 21]), [1.0, 2.0]);
         assert_eq!(metric([21, 81]), [1.0, 1.0]);
+        let scaled = CloudParams { nodes: [21, 81], clearance: ClearanceUnit::Scaled, ..CloudParams::default() };
+        let cloud = generate(&Section::solid(Outline::rectangle([0.0, 0.0], [2.0, 1.0])), &scaled).expect("a cloud");
+        assert_eq!((Metric::of(&cloud).stretch(), Metric::of(&cloud).star_size(9)), ([1.0, 8.0], 9));
     }
 }

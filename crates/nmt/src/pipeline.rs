@@ -104,8 +104,10 @@ fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
     CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
+        division: subdomain.division,
         irregularity: subdomain.irregularity,
         seed: problem.solve.seed,
+        clearance: subdomain.clearance,
         edge_clearance: subdomain.edge_clearance,
         node_clearance: subdomain.node_clearance,
     }

@@ -69,6 +69,8 @@ fn subdomain(draft: SubdomainDraft) -> Option<Subdomain> {
         irregularity: draft.irregularity,
         shear_modulus: draft.shear_modulus,
         formulation: draft.formulation,
+        division: draft.division,
+        clearance: draft.clearance,
         edge_clearance: draft.edge_clearance,
         node_clearance: draft.node_clearance,
         edge_places: edge_places(&contour),

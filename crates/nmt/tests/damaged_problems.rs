@@ -70,6 +70,8 @@ const CASES: &[Case] = &[
     case("a table twice", &[("[solve]", "[solve]\norder = 2\n[solve]")]),
     case("a number with a leading zero", &[("0.25", "00.25")]),
     case("two syntax errors on two lines", &[("\"m\"", "m"), ("= 1.0", "= 1.0.0")]),
+    case("an unknown division", &[("irregularity = 0.25", "irregularity = 0.25\ndivision = \"chords\"")]),
+    case("an unknown unit of clearances", &[("irregularity = 0.25", "irregularity = 0.25\nclearance = \"both\"")]),
     // Keys.
     case("a misspelt key", &[("irregularity", "iregularity")]),
     case("a misspelt key of a shape", &[("radius", "raduis")]),

@@ -1,7 +1,8 @@
 //! The range of every value, for the file and the options of the command alike.
 
 use super::suggest;
-use nmt_cloud::{BYTES_PER_GRID_POINT, MAX_GRID_POINTS};
+use nmt_cloud::{BYTES_PER_GRID_POINT, ClearanceUnit, MAX_GRID_POINTS};
+use nmt_curve::Division;
 use nmt_mfdm::{Formulation, HoleCondition};
 
 /// Lengths, moduli, twists and torques are at most this, whatever their unit.
@@ -188,6 +189,16 @@ pub(super) fn formulation(word: &str) -> Result<Formulation, Refusal> {
 /// A condition on holes by its word.
 pub(super) fn hole_condition(word: &str) -> Result<HoleCondition, Refusal> {
     choice("condition on holes", word, &HoleCondition::ALL.map(|c| (c.name(), c)))
+}
+
+/// The division of curved edges by its word.
+pub(super) fn division(word: &str) -> Result<Division, Refusal> {
+    choice("division", word, &Division::ALL.map(|d| (d.name(), d)))
+}
+
+/// The unit of clearances by its word.
+pub(super) fn clearance_unit(word: &str) -> Result<ClearanceUnit, Refusal> {
+    choice("clearance", word, &ClearanceUnit::ALL.map(|c| (c.name(), c)))
 }
 
 fn choice<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> Result<T, Refusal> {

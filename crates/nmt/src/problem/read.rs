@@ -5,8 +5,9 @@ use super::limits::{self, Refusal, quote};
 use super::schema::{Overrides, SolveSettings};
 use super::shape::{self, Shape};
 use super::tree::{HOLE_KEYS, Reader, SOLVE_KEYS, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
-use nmt_mfdm::Formulation;
-use nmt_mfdm::Load;
+use nmt_cloud::ClearanceUnit;
+use nmt_curve::Division;
+use nmt_mfdm::{Formulation, Load};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -30,6 +31,8 @@ pub(super) struct SubdomainDraft {
     pub(super) irregularity: f64,
     pub(super) shear_modulus: f64,
     pub(super) formulation: Option<Formulation>,
+    pub(super) division: Division,
+    pub(super) clearance: ClearanceUnit,
     pub(super) edge_clearance: f64,
     pub(super) node_clearance: f64,
     pub(super) contour: Option<Shape>,
@@ -155,6 +158,11 @@ fn subdomain(
     let formulation = table.get("formulation");
     let formulation =
         formulation.and_then(|value| reader.text(&item, "formulation", value, "\"variational\"", limits::formulation));
+    let division = table.get("division");
+    let division = division.and_then(|value| reader.text(&item, "division", value, "\"arc\"", limits::division));
+    let clearance = table.get("clearance");
+    let clearance =
+        clearance.and_then(|value| reader.text(&item, "clearance", value, "\"scaled\"", limits::clearance_unit));
     let contour = shape::read(reader, &table, "");
     let tables = tables(reader, &table, "hole", "[[subdomain.hole]]");
     let holes: Vec<_> = tables.into_iter().enumerate().map(|(k, table)| hole(reader, table, k + 1)).collect();
@@ -179,6 +187,8 @@ fn subdomain(
         irregularity,
         shear_modulus,
         formulation,
+        division: division.unwrap_or_default(),
+        clearance: clearance.unwrap_or_default(),
         edge_clearance,
         node_clearance,
         contour,

@@ -1,7 +1,8 @@
 //! The problem as the pipeline takes it: read, typed, within its limits.
 
 use super::error::{Place, Source};
-use nmt_curve::Outline;
+use nmt_cloud::ClearanceUnit;
+use nmt_curve::{Division, Outline};
 use nmt_mfdm::{Formulation, HoleCondition, Load};
 
 /// A sound problem: every value within its limits, every outline closed, simple and in its place.
@@ -32,6 +33,10 @@ pub struct Subdomain {
     pub shear_modulus: f64,
     /// Its own formulation, where it differs from that of [`SolveSettings`].
     pub formulation: Option<Formulation>,
+    /// How nodes are spread along curved edges, those of the holes included \[D3\]; by arc length by default.
+    pub division: Division,
+    /// What the two clearances are measured in; max(h_x, h_y) by default.
+    pub clearance: ClearanceUnit,
     /// Least distance of an interior node from a boundary segment, in spacings \[D6\]; ⅓ by default.
     pub edge_clearance: f64,
     /// Least distance of an interior node from a boundary node, in spacings \[D7\]; ½ by default.

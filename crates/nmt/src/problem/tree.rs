@@ -47,6 +47,8 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "irregularity",
     "shear_modulus",
     "formulation",
+    "division",
+    "clearance",
     "edge_clearance",
     "node_clearance",
     "outline",

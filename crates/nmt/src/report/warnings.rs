@@ -18,14 +18,16 @@ pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Vec<String> {
     let mut warnings = Vec::new();
     let [h_x, h_y] = cloud.spacing();
     let ratio = h_x.max(h_y) / h_x.min(h_y);
-    if ratio > UNEQUAL_SPACINGS * (1.0 + SAME_POINT_REL) {
+    let cleared_by_the_larger = cloud.clearance().stretch == [1.0; 2];
+    if cleared_by_the_larger && ratio > UNEQUAL_SPACINGS * (1.0 + SAME_POINT_REL) {
         // The finer density for both directions.
         let extent = cloud.boundary().envelope();
         let h = h_x.min(h_y);
         let count = |length: f64| (length / h).round() as usize + 1;
         warnings.push(format!(
             "subdomain \"{name}\": the spacings h_x and h_y differ by a factor of {ratio:.1}, which clears rows of nodes \
-             beside the boundary and costs digits; nodes = [{}, {}] would make them equal",
+             beside the boundary and costs digits; nodes = [{}, {}] would make them equal, and clearance = \"scaled\" measures \
+             clearances along x in h_x and along y in h_y",
             count(extent.width()),
             count(extent.height())
         ));
