@@ -1,70 +1,160 @@
-//! Golden results: the shipped problems in both formulations against `fixtures/golden`.
+//! Golden tests: what nmt computes against what is committed under `fixtures/golden`.
 //!
-//! Each case is a directory with `case.toml` (the problem, its origin, the tolerance and its reason) and `expected.csv`
-//! (formulation, subdomain, quantity, value). They are our own numbers: they show what a change moves, not what is right;
-//! that is what the verification tests are for.
+//! Each case is a directory with `case.toml` (what it is for, where its numbers come from, the tolerance and its reason)
+//! and `expected/`. Two kinds, told apart by `reference`:
+//!
+//! * `"octave"`: made by the scripts of `fixtures/octave`, an independent implementation in the MATLAB language;
+//! * `"nmt"`: nmt's own numbers, which show what a change moves, not what is right.
+
+mod checksum;
+mod clouds;
+mod fixture;
+mod results;
 
 use crate::root;
 use anyhow::{Context as _, Result, bail};
-use nmt::prelude::*;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// One number of a result.
 #[derive(Clone, Debug, PartialEq)]
-struct Entry {
-    /// formulation, subdomain, quantity: what names it in the file.
-    id: String,
-    value: f64,
+pub struct Entry {
+    /// What names it in the file.
+    pub id: String,
+    /// The number.
+    pub value: f64,
+    /// What a difference is divided by: a size, the number itself, or nothing for a number that must be equal.
+    pub scale: Scale,
+}
+
+/// What the difference of an entry is measured in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// The expected number itself.
+    Itself,
+    /// A length.
+    Length(f64),
+    /// It must be equal: a count, a number of a node or an edge.
+    Exact,
+}
+
+impl Entry {
+    /// How far `found` is from this expected entry.
+    fn difference(&self, found: &Self) -> f64 {
+        let off = (found.value - self.value).abs();
+        match self.scale {
+            _ if off == 0.0 => 0.0,
+            Scale::Exact => f64::INFINITY,
+            Scale::Itself => off / self.value.abs().max(f64::MIN_POSITIVE),
+            // NaN is no agreement.
+            Scale::Length(length) => {
+                if off.is_nan() {
+                    f64::INFINITY
+                } else {
+                    off / length
+                }
+            }
+        }
+    }
+}
+
+/// Where the expected numbers of a case come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reference {
+    Octave,
+    Own,
 }
 
 struct Case {
     name: String,
     directory: PathBuf,
+    reference: Reference,
     problem: PathBuf,
     tolerance: f64,
 }
 
-/// Compares every case and prints its worst entry.
+/// The worst of a comparison.
+#[derive(Debug)]
+struct Worst {
+    expected: Entry,
+    found: Entry,
+    difference: f64,
+}
+
+/// Compares every case and prints its worst entry, or why there is none.
 pub fn compare() -> Result<()> {
     let mut failed = Vec::new();
     for case in cases()? {
-        let expected = read_expected(&case.directory.join("expected.csv"))?;
-        let found = results(&case.problem)?;
-        let ids = |entries: &[Entry]| entries.iter().map(|e| e.id.clone()).collect::<Vec<_>>();
-        if ids(&expected) != ids(&found) {
-            bail!(
-                "{}: expected.csv lists other entries than the results; run cargo xtask golden --regenerate",
-                case.name
-            );
-        }
-        let difference = |(e, f): (&Entry, &Entry)| (f.value - e.value).abs() / e.value.abs().max(f64::MIN_POSITIVE);
-        let worst = expected.iter().zip(&found).max_by(|a, b| difference(*a).total_cmp(&difference(*b)));
-        let Some((e, f)) = worst else { bail!("{}: expected.csv is empty", case.name) };
-        let off = if e.value == f.value { 0.0 } else { difference((e, f)) };
-        println!(
-            "{:12} worst entry {}: expected {:e}, found {:e}, relative {off:.1e}",
-            case.name, e.id, e.value, f.value
-        );
-        if off > case.tolerance {
-            failed.push(format!("{} ({}, tolerance {:.0e})", case.name, e.id, case.tolerance));
+        match compare_case(&case) {
+            Ok(Worst { expected, found, difference }) => {
+                println!(
+                    "{:26} worst entry {}: expected {:e}, found {:e}, off by {difference:.1e}",
+                    case.name, expected.id, expected.value, found.value
+                );
+                if difference > case.tolerance {
+                    failed.push(format!("{} ({}, tolerance {:.0e})", case.name, expected.id, case.tolerance));
+                }
+            }
+            Err(error) => {
+                println!("{:26} {error:#}", case.name);
+                failed.push(case.name);
+            }
         }
     }
     if failed.is_empty() { Ok(()) } else { bail!("golden results differ: {}", failed.join(", ")) }
 }
 
-/// Rewrites the expected results of every case.
-pub fn regenerate() -> Result<()> {
-    for case in cases()? {
-        let mut text = String::from("formulation,subdomain,quantity,value\n");
-        for entry in results(&case.problem)? {
-            writeln!(text, "{},{:.16e}", entry.id, entry.value)?;
+fn compare_case(case: &Case) -> Result<Worst> {
+    let (expected, found) = match case.reference {
+        Reference::Octave => {
+            checksum::verify(&case.directory)?;
+            clouds::entries(&case.problem, &case.directory.join("expected"))?
         }
-        fs::write(case.directory.join("expected.csv"), text)?;
-        println!("{:12} rewritten", case.name);
+        Reference::Own => {
+            (results::read_expected(&case.directory.join("expected.csv"))?, results::results(&case.problem)?)
+        }
+    };
+    worst(&expected, &found)
+}
+
+/// Rewrites the expected results: those of Octave by its scripts, our own from the present code.
+pub fn regenerate() -> Result<()> {
+    octave(&format!("write_all('{}')", root().join("fixtures/golden").display()))?;
+    for case in cases()? {
+        match case.reference {
+            Reference::Octave => checksum::write(&case.directory)?,
+            Reference::Own => results::write_expected(&case.problem, &case.directory.join("expected.csv"))?,
+        }
+        println!("{:26} rewritten", case.name);
     }
     Ok(())
+}
+
+/// Runs a command of the reference's scripts.
+fn octave(text: &str) -> Result<()> {
+    let mut command = Command::new("octave-cli");
+    command.args(["--quiet", "--norc", "--path"]).arg(root().join("fixtures/octave"));
+    command.arg("--eval").arg(text).current_dir(root().join("fixtures/octave"));
+    let status =
+        command.status().context("octave-cli cannot be started; install GNU Octave (Debian package octave)")?;
+    if !status.success() {
+        bail!("octave-cli failed on {text}");
+    }
+    Ok(())
+}
+
+/// The entry that is farthest off; both lists must name the same things in the same order.
+fn worst(expected: &[Entry], found: &[Entry]) -> Result<Worst> {
+    if let Some((e, f)) = expected.iter().zip(found).find(|(e, f)| e.id != f.id) {
+        bail!("expected lists {}, the results {}", e.id, f.id);
+    }
+    if expected.len() != found.len() {
+        bail!("expected lists {} entries, the results {}", expected.len(), found.len());
+    }
+    let differences = expected.iter().zip(found).map(|(e, f)| (e, f, e.difference(f)));
+    let worst = differences.max_by(|a, b| a.2.total_cmp(&b.2)).context("nothing is expected")?;
+    Ok(Worst { expected: worst.0.clone(), found: worst.1.clone(), difference: worst.2 })
 }
 
 fn cases() -> Result<Vec<Case>> {
@@ -86,46 +176,83 @@ fn read_case(directory: PathBuf) -> Result<Case> {
     let text = fs::read_to_string(&file)?;
     let table = toml::de::DeTable::parse(&text).map_err(|error| anyhow::anyhow!("{}: {error}", file.display()))?;
     let value = |key: &str| table.get_ref().get(key).map(|value| value.get_ref());
-    let problem = value("problem").and_then(|v| v.as_str()).context("case.toml: no problem")?;
+    let word = |key: &str| value(key).and_then(|v| v.as_str()).with_context(|| format!("{}: no {key}", file.display()));
+    let reference = match word("reference")? {
+        "octave" => Reference::Octave,
+        "nmt" => Reference::Own,
+        other => bail!("{}: reference = \"{other}\" is neither \"octave\" nor \"nmt\"", file.display()),
+    };
+    word("reason")?;
+    let problem = match reference {
+        Reference::Octave => directory.join("problem.toml"),
+        Reference::Own => root().join("fixtures/problems").join(word("problem")?),
+    };
     let tolerance = value("tolerance").and_then(|v| v.as_float()).context("case.toml: no tolerance")?;
     Ok(Case {
         name: directory.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
-        problem: root().join("fixtures/problems").join(problem),
+        reference,
+        problem,
         tolerance: tolerance.as_str().replace('_', "").parse()?,
         directory,
     })
 }
 
-fn results(file: &Path) -> Result<Vec<Entry>> {
+/// A problem file as the command reads it.
+fn read_problem(file: &Path, overrides: &nmt::problem::Overrides) -> Result<nmt::problem::Problem> {
     let text = fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))?;
-    let mut entries = Vec::new();
-    for formulation in Formulation::ALL {
-        let overrides = Overrides { formulation: Some(formulation.name().into()), ..Overrides::default() };
-        let problem = Problem::parse(&file.display().to_string(), &text, &overrides).map_err(nmt::NmtError::Problem)?;
-        for solved in solve_problem(&problem)? {
-            let (mesh, solution) = (&solved.part.mesh, &solved.solution);
-            let mut add = |quantity: &str, value: f64| {
-                entries.push(Entry { id: format!("{},{},{quantity}", formulation.name(), solved.part.name), value });
-            };
-            add("nodes", mesh.cloud().n_nodes() as f64);
-            add("triangles", mesh.n_triangles() as f64);
-            add("area", mesh.total_area());
-            add("J", solution.j);
-            add("F_max", solution.f_max.value);
-            add("tau_max", solution.tau_max.value);
-            for (name, hole) in solved.part.hole_names.iter().zip(&solution.holes) {
-                add(&format!("F on {name}"), hole.f);
+    let problem = nmt::problem::Problem::parse(&file.display().to_string(), &text, overrides);
+    Ok(problem.map_err(nmt::NmtError::Problem)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(name: &str) -> Case {
+        read_case(root().join("fixtures/golden").join(name)).expect("a case")
+    }
+
+    fn entries(name: &str) -> (Case, Vec<Entry>, Vec<Entry>) {
+        let case = case(name);
+        let (expected, found) = clouds::entries(&case.problem, &case.directory.join("expected")).expect("a cloud");
+        (case, expected, found)
+    }
+
+    #[test]
+    fn one_changed_number_of_any_file_is_found() {
+        let (case, expected, found) = entries("cloud-holes");
+        assert!(worst(&expected, &found).expect("entries").difference <= case.tolerance);
+        // The first and the last number of each file, changed by what a digit can be.
+        for file in ["nodes", "segments", "census", "edges"] {
+            let of_file = |e: &&mut Entry| e.id.starts_with(file);
+            let n = expected.iter().filter(|e| e.id.starts_with(file)).count();
+            assert!(n > 5, "{file}: {n}");
+            for k in [0, n - 1] {
+                let mut changed = expected.clone();
+                let Some(entry) = changed.iter_mut().filter(of_file).nth(k) else { panic!("{file} has {n} entries") };
+                entry.value += if entry.scale == Scale::Exact { 1.0 } else { 1e-6 };
+                let id = entry.id.clone();
+                let worst = worst(&changed, &found).expect("entries");
+                assert!(worst.difference > case.tolerance && worst.expected.id == id, "{id}: {worst:?}");
             }
         }
     }
-    Ok(entries)
-}
 
-fn read_expected(file: &Path) -> Result<Vec<Entry>> {
-    let text = fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))?;
-    let entry = |line: &str| {
-        let (id, value) = line.rsplit_once(',').context("a line without a comma")?;
-        Ok(Entry { id: id.into(), value: value.trim().parse()? })
-    };
-    text.lines().skip(1).map(entry).collect()
+    #[test]
+    fn a_missing_node_is_an_error() {
+        let (_, mut expected, found) = entries("cloud-skew");
+        expected.pop();
+        assert!(worst(&expected, &found).is_err());
+        expected.remove(0);
+        assert!(worst(&expected, &found).is_err());
+    }
+
+    #[test]
+    fn files_that_were_edited_by_hand_are_found() {
+        let directory = root().join("fixtures/golden/cloud-skew");
+        let sound = checksum::of_case(&directory).expect("a case");
+        assert_eq!(checksum::verify(&directory).ok(), Some(()));
+        let elsewhere = checksum::of_case(&root().join("fixtures/golden/cloud-holes")).expect("a case");
+        assert_ne!(sound, elsewhere);
+    }
 }

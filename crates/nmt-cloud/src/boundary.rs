@@ -2,7 +2,7 @@
 
 use crate::error::CloudError;
 use crate::section::{CloudParams, Section};
-use nmt_curve::{ArcTable, Curve, Division, divide_by_chords, node_count};
+use nmt_curve::{ArcTable, Curve, Division, EdgeNodes, divide_by_chords, node_count};
 use nmt_geom::point::{along, sub};
 use nmt_geom::{BoundaryLoop, EdgeId, NodeId, Point, RealBoundary};
 
@@ -12,6 +12,21 @@ pub(crate) struct BoundaryNodes {
     pub n_vertices: usize,
     /// Arc length from the beginning of its edge to each boundary node, as a fraction of the edge; 0 at vertices.
     pub fractions: Vec<f64>,
+    /// Edges divided by chords.
+    pub closings: Vec<Closing>,
+}
+
+/// How a division by equal chords closed; paper, eq. (5) \[D3\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closing {
+    /// The edge.
+    pub edge: EdgeId,
+    /// Length of the equal chords, user's length unit.
+    pub chord: f64,
+    /// Nodes that no longer fitted.
+    pub left_out: usize,
+    /// By how much the last chord, to the end of the edge, misses that length; user's length unit.
+    pub closing_error: f64,
 }
 
 /// Places the boundary nodes: every vertex, then the nodes of every edge by its rule, each displaced along its edge by
@@ -41,15 +56,17 @@ pub(crate) fn boundary_nodes(
             // A closed edge of n nodes has n segments, an open one n − 1.
             let n_nodes = edge.nodes.unwrap_or_else(|| node_count(&edge.curve, rate));
             let n_segments = if edge.curve.is_closed() { n_nodes.max(3) } else { n_nodes.max(2) - 1 };
-            let places = Places::new(&edge.curve, n_segments, params.division).map_err(failed)?;
+            let (places, closing) = Places::new(&edge.curve, n_segments, params.division).map_err(failed)?;
+            let edge_id = EdgeId::of(first_edge + e);
+            draft.closings.extend(closing.map(|closing| Closing { edge: edge_id, ..closing }));
             let path = EdgePath::new(&edge.curve).map_err(failed)?;
-            draft.begin_edge(&mut ring, NodeId::of(first_vertex + e), EdgeId::of(first_edge + e));
+            draft.begin_edge(&mut ring, NodeId::of(first_vertex + e), edge_id);
             for s in 1..places.n_segments() {
                 let slide = match params.irregularity {
                     0.0 => 0.0,
                     amplitude => amplitude * random(draft.xy.len(), 0)[0],
                 };
-                draft.push(&mut ring, &path, places.slid(s, slide), EdgeId::of(first_edge + e));
+                draft.push(&mut ring, &path, places.slid(s, slide), edge_id);
             }
         }
         draft.loops.push(ring);
@@ -57,7 +74,7 @@ pub(crate) fn boundary_nodes(
         first_edge += outline.edges.len();
     }
     let boundary = RealBoundary::new(draft.xy, draft.loops)?;
-    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions })
+    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions, closings: draft.closings })
 }
 
 /// Slides the edge nodes of an existing boundary along their edges, each by ±Amp of the shorter of its two segments.
@@ -108,7 +125,7 @@ pub(crate) fn slide(
         draft.loops.push(ring);
     }
     let boundary = RealBoundary::new(draft.xy, draft.loops)?;
-    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions })
+    Ok(BoundaryNodes { boundary, n_vertices, fractions: draft.fractions, closings: Vec::new() })
 }
 
 /// Boundary nodes on the way to a real boundary.
@@ -116,13 +133,14 @@ struct Draft {
     xy: Vec<Point>,
     fractions: Vec<f64>,
     loops: Vec<BoundaryLoop>,
+    closings: Vec<Closing>,
 }
 
 impl Draft {
     /// The vertices: contour first, then holes.
     fn at_vertices(section: &Section) -> Self {
         let xy: Vec<Point> = section.loops().flat_map(|outline| outline.vertices.iter().copied()).collect();
-        Self { fractions: vec![0.0; xy.len()], xy, loops: Vec::new() }
+        Self { fractions: vec![0.0; xy.len()], xy, loops: Vec::new(), closings: Vec::new() }
     }
 
     /// Goes on with `ring` from a vertex along an edge.
@@ -149,17 +167,22 @@ enum Places {
 }
 
 impl Places {
-    fn new(curve: &Curve, n_segments: usize, division: Division) -> Result<Self, nmt_curve::CurveError> {
+    /// The places by `division`, and how it closed where it is by chords; the edge of that is the caller's to name.
+    fn new(
+        curve: &Curve,
+        n_segments: usize,
+        division: Division,
+    ) -> Result<(Self, Option<Closing>), nmt_curve::CurveError> {
         // Equal chords of a line are its equal parts.
         if division == Division::Arc || curve.is_straight() {
-            return Ok(Self::Even(n_segments));
+            return Ok((Self::Even(n_segments), None));
         }
         let n_nodes = if curve.is_closed() { n_segments } else { n_segments + 1 };
-        let mut fractions = divide_by_chords(curve, n_nodes)?.fractions;
+        let EdgeNodes { mut fractions, chord, left_out, closing_error, .. } = divide_by_chords(curve, n_nodes)?;
         if curve.is_closed() {
             fractions.push(1.0);
         }
-        Ok(Self::Listed(fractions))
+        Ok((Self::Listed(fractions), Some(Closing { edge: EdgeId(0), chord, left_out, closing_error })))
     }
 
     fn n_segments(&self) -> usize {

@@ -185,12 +185,10 @@ impl<'a> Sieve<'a> {
 
     fn mark_near(&mut self, boundary: &RealBoundary, clearance: &Clearance) {
         let lattice = self.lattice;
-        for [a, b] in boundary.all_ends() {
-            sites_near(lattice, a, b, clearance, clearance.segment, |i, j| self.doom(i, j, Fate::NearEdge));
-        }
-        for &p in boundary.xy() {
-            sites_near(lattice, p, p, clearance, clearance.node, |i, j| self.doom(i, j, Fate::NearNode));
-        }
+        let segments = boundary.all_ends();
+        sites_near(lattice, segments, clearance, clearance.segment, |i, j| self.doom(i, j, Fate::NearEdge));
+        let nodes = boundary.all_ends().map(|[a, _]| [a, a]);
+        sites_near(lattice, nodes, clearance, clearance.node, |i, j| self.doom(i, j, Fate::NearNode));
     }
 
     fn doom(&mut self, i: usize, j: usize, fate: Fate) {
@@ -239,14 +237,103 @@ struct Crossing {
     hole: bool,
 }
 
-/// Calls `visit` with every interior site nearer than `radius` to the segment `a b`, distances being those of `clearance`.
-pub(crate) fn sites_near(
+/// A set of interior sites, a bit each.
+pub(crate) struct SiteSet(Vec<u64>);
+
+impl SiteSet {
+    /// The sites nearer to the boundary than `reach`, distances being those of `clearance`.
+    pub fn near(lattice: &Lattice, boundary: &RealBoundary, clearance: &Clearance, reach: f64) -> Self {
+        let mut set = Self(vec![0; lattice.shape[0] * lattice.shape[1] / 64 + 1]);
+        sites_near(lattice, boundary.all_ends(), clearance, reach, |i, j| {
+            let site = lattice.number(i, j);
+            set.0[site as usize / 64] |= 1 << (site % 64);
+        });
+        set
+    }
+
+    /// True where the site of this number is in it.
+    pub fn contains(&self, site: u32) -> bool {
+        self.0[site as usize / 64] >> (site % 64) & 1 == 1
+    }
+}
+
+/// Segments in a row that are looked at together, at most, and how far they may extend, as a fraction of the radius asked
+/// for: where the boundary is much finer than the grid, whole rows of segments are near to the same sites.
+const MOST_IN_A_ROW: usize = 256;
+const ROW_EXTENT: f64 = 0.25;
+
+/// Calls `visit` with every interior site nearer than `radius` to one of the segments, distances being those of
+/// `clearance`; with some more than once. Segments that follow each other should be neighbours.
+fn sites_near(
+    lattice: &Lattice,
+    segments: impl IntoIterator<Item = [Point; 2]>,
+    clearance: &Clearance,
+    radius: f64,
+    mut visit: impl FnMut(usize, usize),
+) {
+    let most = clearance.extent(ROW_EXTENT * radius);
+    let mut row: Vec<[Point; 2]> = Vec::with_capacity(MOST_IN_A_ROW);
+    let mut envelope = Bbox::EMPTY;
+    for [a, b] in segments {
+        let mut grown = envelope;
+        grown.include(a);
+        grown.include(b);
+        let together = grown.width() <= most[0] && grown.height() <= most[1] && row.len() < MOST_IN_A_ROW;
+        if !together && !row.is_empty() {
+            sites_near_row(lattice, &row, envelope, clearance, radius, &mut visit);
+            row.clear();
+            grown = Bbox::of([a, b]);
+        }
+        envelope = grown;
+        row.push([a, b]);
+    }
+    if !row.is_empty() {
+        sites_near_row(lattice, &row, envelope, clearance, radius, &mut visit);
+    }
+}
+
+/// The same for the segments of a row within a common envelope: most sites are near all of them or none.
+fn sites_near_row(
+    lattice: &Lattice,
+    row: &[[Point; 2]],
+    envelope: Bbox,
+    clearance: &Clearance,
+    radius: f64,
+    visit: &mut impl FnMut(usize, usize),
+) {
+    if let [[a, b]] = *row {
+        return sites_near_one(lattice, a, b, clearance, radius, visit);
+    }
+    let Bbox { min, max } = envelope;
+    let [reach_x, reach_y] = clearance.extent(radius);
+    let squared = |x: f64, y: f64| (x * clearance.stretch[0]).powi(2) + (y * clearance.stretch[1]).powi(2);
+    // Squares, and a hair to either side: what is nearer to the limit than rounding is decided segment by segment.
+    let (surely, hardly) = (radius * radius * (1.0 - 1e-9), radius * radius * (1.0 + 1e-9));
+    for j in lattice.interior_range(1, min[1] - reach_y, max[1] + reach_y) {
+        let y = lattice.coordinate(1, j);
+        let (near_y, far_y) = ((min[1] - y).max(y - max[1]).max(0.0), (max[1] - y).max(y - min[1]));
+        for i in lattice.interior_range(0, min[0] - reach_x, max[0] + reach_x) {
+            let x = lattice.coordinate(0, i);
+            let (near_x, far_x) = ((min[0] - x).max(x - max[0]).max(0.0), (max[0] - x).max(x - min[0]));
+            if squared(near_x, near_y) > hardly {
+                continue;
+            }
+            let within = |&[a, b]: &[Point; 2]| clearance.distance([x, y], a, b) < radius;
+            if squared(far_x, far_y) < surely || row.iter().any(within) {
+                visit(i, j);
+            }
+        }
+    }
+}
+
+/// The same for one segment, row by row of the grid.
+fn sites_near_one(
     lattice: &Lattice,
     a: Point,
     b: Point,
     clearance: &Clearance,
     radius: f64,
-    mut visit: impl FnMut(usize, usize),
+    visit: &mut impl FnMut(usize, usize),
 ) {
     let [reach_x, reach_y] = clearance.extent(radius);
     let (low, high) = if a[1] <= b[1] { (a, b) } else { (b, a) };
@@ -311,11 +398,11 @@ mod tests {
             let clearance = Clearance::new(&lattice, size, unit, 1.0 / 3.0, 0.5);
             let mut kept = Vec::new();
             Sieve::new(&lattice, &boundary, &clearance).kept(|number, p| kept.push((number, p)));
-            let index = boundary.segment_index();
+            let index = boundary.index();
             for j in 1..shape[1] - 1 {
                 for i in 1..shape[0] - 1 {
                     let p = lattice.site(i, j);
-                    let expected = index.locate(p) == Location::Inside && clearance.holds(p, &index);
+                    let expected = index.locate(p) == Location::Inside && clearance.holds(p, index);
                     prop_assert_eq!(kept.contains(&(lattice.number(i, j), p)), expected, "site ({}, {}) at {:?}", i, j, p);
                 }
             }

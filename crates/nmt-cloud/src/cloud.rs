@@ -1,5 +1,6 @@
 //! The cloud: coordinates, kinds, outline edges, spacing.
 
+use crate::boundary::Closing;
 use crate::census::Census;
 use crate::clearance::Clearance;
 use crate::error::CloudError;
@@ -48,6 +49,7 @@ pub struct Cloud {
     spacing: [f64; 2],
     clearance: Clearance,
     born: Option<Born>,
+    closings: Vec<Closing>,
     census: Census,
 }
 
@@ -79,6 +81,7 @@ pub(crate) struct CloudParts {
     pub spacing: [f64; 2],
     pub clearance: Clearance,
     pub born: Option<Born>,
+    pub closings: Vec<Closing>,
     pub census: Census,
 }
 
@@ -96,12 +99,22 @@ impl Cloud {
     ) -> Self {
         let mut xy = boundary.xy().to_vec();
         xy.extend(interior);
-        let clearance = Clearance::NONE;
-        Self::new(CloudParts { xy, n_vertices, boundary, fractions: None, spacing, clearance, born: None, census })
+        let (clearance, closings) = (Clearance::NONE, Vec::new());
+        Self::new(CloudParts {
+            xy,
+            n_vertices,
+            boundary,
+            fractions: None,
+            spacing,
+            clearance,
+            born: None,
+            closings,
+            census,
+        })
     }
 
     pub(crate) fn new(parts: CloudParts) -> Self {
-        let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census } = parts;
+        let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census } = parts;
         let none = NodeEdges { first: EdgeId(u32::MAX), second: EdgeId(u32::MAX) };
         let mut edges = vec![none; boundary.xy().len()];
         for segment in boundary.segments() {
@@ -122,7 +135,7 @@ impl Cloud {
                 }
             }
         }
-        Self { xy, n_vertices, boundary, edges, fractions, spacing, clearance, born, census }
+        Self { xy, n_vertices, boundary, edges, fractions, spacing, clearance, born, closings, census }
     }
 
     /// Coordinates, shape (n_nodes, 2), user's length unit.
@@ -204,6 +217,11 @@ impl Cloud {
         self.born.as_ref().map(|born| &*born.sites)
     }
 
+    /// How each edge that was divided by chords closed, in order of the edges.
+    pub fn closings(&self) -> &[Closing] {
+        &self.closings
+    }
+
     /// Generated and deleted grid points by cause.
     pub fn census(&self) -> Census {
         self.census
@@ -227,12 +245,12 @@ impl Cloud {
             let at = crate::generate::place_of(fault, &self.boundary);
             return Err(CloudError::BoundaryCrosses { at, remedy: "give the outline more nodes".into() });
         }
-        let index = self.boundary.segment_index();
+        let index = self.boundary.index();
         let interior = &self.xy[self.n_boundary()..];
         if let Some(&at) = interior.iter().find(|&&p| index.locate(p) != nmt_geom::Location::Inside) {
             return Err(CloudError::InteriorOutside { at });
         }
-        if let Some(&at) = interior.iter().find(|&&p| !self.clearance.holds(p, &index)) {
+        if let Some(&at) = interior.iter().find(|&&p| !self.clearance.holds(p, index)) {
             return Err(CloudError::TooNear { at });
         }
         let Some(born) = &self.born else { return Ok(()) };

@@ -1,7 +1,7 @@
 //! Section and density in, cloud out: the paper's steps in a row (Sec. 4).
 
 use crate::boundary::{BoundaryNodes, boundary_nodes, slide};
-use crate::clearance::{Clearance, Sieve, sites_near};
+use crate::clearance::{Clearance, Sieve, SiteSet};
 use crate::cloud::{Born, Cloud, CloudParts};
 use crate::error::CloudError;
 use crate::irregular::Displacements;
@@ -56,7 +56,7 @@ pub fn generate_with(
     mut random: impl FnMut(usize, usize) -> [f64; 2],
 ) -> Result<Cloud, CloudError> {
     let random: &mut dyn FnMut(usize, usize) -> [f64; 2] = &mut random;
-    let Prepared { lattice, boundary: BoundaryNodes { boundary, n_vertices, fractions }, clearance } =
+    let Prepared { lattice, boundary: BoundaryNodes { boundary, n_vertices, fractions, closings }, clearance } =
         prepare(section, params, random)?;
     if let Some(fault) = boundary.faults().first() {
         let at = place_of(fault, &boundary);
@@ -77,14 +77,18 @@ pub fn generate_with(
     });
     drop(sieve);
     if params.irregularity > 0.0 {
-        let exposed = Exposed::of_sites(&lattice, &boundary, &clearance, params.irregularity);
+        // Only sites this near to the boundary can be moved too close to it, or across it.
+        let [h_x, h_y] = lattice.spacing();
+        let [s_x, s_y] = clearance.stretch;
+        let reach = clearance.reach() + params.irregularity * (s_x * h_x).hypot(s_y * h_y);
+        let exposed = SiteSet::near(&lattice, &boundary, &clearance, reach * (1.0 + 1e-9));
         let is_exposed = |k: usize| exposed.contains(sites[k]);
         displace(&mut xy, &boundary, &clearance, lattice.spacing(), params.irregularity, is_exposed, random);
     }
     let spacing = lattice.spacing();
     let born = Some(Born { lattice, sites });
     let fractions = Some(fractions);
-    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census }))
+    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census }))
 }
 
 /// Randomises an existing cloud; paper, Sec. 4.4, eqs (10)–(11).
@@ -120,18 +124,18 @@ pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64)
     let (n_vertices, clearance, spacing) = (cloud.n_vertices(), *cloud.clearance(), cloud.spacing());
     let fractions = cloud.edge_fractions().ok_or(CloudError::NotGenerated)?;
     let slid = slide(section, cloud.boundary(), n_vertices, fractions, irregularity, random)?;
-    let BoundaryNodes { boundary, fractions, .. } = slid;
+    let (closings, BoundaryNodes { boundary, fractions, .. }) = (cloud.closings().to_vec(), slid);
     if let Some(fault) = boundary.faults().first() {
         let remedy = "choose a smaller irregularity".into();
         return Err(CloudError::BoundaryCrosses { at: place_of(fault, &boundary), remedy });
     }
-    let index = boundary.segment_index();
+    let index = boundary.index();
     let mut census = cloud.census();
     let mut xy = boundary.xy().to_vec();
     let mut sites = cloud.sites().map(|_| Vec::new());
     for (k, &p) in cloud.xy()[cloud.n_boundary()..].iter().enumerate() {
         let inside = index.locate(p) == Location::Inside;
-        if inside && clearance.holds(p, &index) {
+        if inside && clearance.holds(p, index) {
             xy.push(p);
             if let (Some(kept), Some(all)) = (&mut sites, cloud.sites()) {
                 kept.push(all[k]);
@@ -141,7 +145,7 @@ pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64)
         let edge_alone = Clearance { node: 0.0, ..clearance };
         let cause = match inside {
             false => &mut census.outside,
-            true if !edge_alone.holds(p, &index) => &mut census.near_edge,
+            true if !edge_alone.holds(p, index) => &mut census.near_edge,
             true => &mut census.near_node,
         };
         *cause += 1;
@@ -154,7 +158,7 @@ pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64)
     let born = cloud.lattice().zip(sites).map(|(lattice, sites)| Born { lattice: *lattice, sites });
     let born = born.filter(|born| born.all_within_boxes(&xy[boundary.xy().len()..]));
     let fractions = Some(fractions);
-    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, census }))
+    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census }))
 }
 
 /// Lattice, real boundary and clearances: all that the interior nodes depend on.
@@ -187,30 +191,6 @@ fn prepare(
     Ok(Prepared { lattice, boundary, clearance })
 }
 
-/// Sites so near to the boundary that a displacement could bring them too close to it, or across it; a bit each.
-struct Exposed(Vec<u64>);
-
-impl Exposed {
-    fn of_sites(lattice: &Lattice, boundary: &RealBoundary, clearance: &Clearance, amplitude: f64) -> Self {
-        let [h_x, h_y] = lattice.spacing();
-        let [s_x, s_y] = clearance.stretch;
-        let reach = clearance.reach() + amplitude * (s_x * h_x).hypot(s_y * h_y);
-        let mut exposed = Self(vec![0; lattice.shape[0] * lattice.shape[1] / 64 + 1]);
-        for [a, b] in boundary.all_ends() {
-            sites_near(lattice, a, b, clearance, reach * (1.0 + 1e-9), |i, j| exposed.add(lattice.number(i, j)));
-        }
-        exposed
-    }
-
-    fn add(&mut self, site: u32) {
-        self.0[site as usize / 64] |= 1 << (site % 64);
-    }
-
-    fn contains(&self, site: u32) -> bool {
-        self.0[site as usize / 64] >> (site % 64) & 1 == 1
-    }
-}
-
 /// Moves each interior node as (10) says; a place that is not clear of the boundary is drawn again.
 ///
 /// `is_exposed(k)`: whether interior node k could come too near to the boundary at all.
@@ -224,7 +204,7 @@ fn displace(
     random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) {
     let n_boundary = boundary.xy().len();
-    let index = boundary.segment_index();
+    let index = boundary.index();
     let (dx, dy) = (h_x * amplitude, h_y * amplitude);
     let mut place = |node: usize, site: Point, draw: usize| {
         let [r, s] = random(node, draw);
@@ -233,7 +213,7 @@ fn displace(
     let mut redraw = Vec::new();
     for (k, p) in xy[n_boundary..].iter_mut().enumerate() {
         let new = place(n_boundary + k, *p, 0);
-        if is_exposed(k) && !may_move(*p, new, clearance, &index) {
+        if is_exposed(k) && !may_move(*p, new, clearance, index) {
             redraw.push(n_boundary + k);
         } else {
             *p = new;
@@ -242,7 +222,7 @@ fn displace(
     for draw in 1..MAX_DRAWS {
         redraw.retain(|&node| {
             let new = place(node, xy[node], draw);
-            let moves = may_move(xy[node], new, clearance, &index);
+            let moves = may_move(xy[node], new, clearance, index);
             if moves {
                 xy[node] = new;
             }

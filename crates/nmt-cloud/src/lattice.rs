@@ -58,10 +58,11 @@ impl Lattice {
 
     /// Interior indices `1..N−1` of axis `d` whose coordinate may lie in [low, high], with one more at either side.
     pub(crate) fn interior_range(&self, d: usize, low: f64, high: f64) -> std::ops::Range<usize> {
-        let h = self.extent[d] / (self.shape[d] - 1) as f64;
-        let index = |v: f64| ((v - self.origin[d]) / h).clamp(-2.0, self.shape[d] as f64 + 2.0);
-        let first = (index(low).floor() - 1.0).max(1.0) as usize;
-        let last = (index(high).ceil() + 2.0).clamp(1.0, (self.shape[d] - 1) as f64) as usize;
+        let per_length = (self.shape[d] - 1) as f64 / self.extent[d];
+        // Truncation is the floor of what is positive; below it, and NaN, is 0.
+        let index = |v: f64| ((v - self.origin[d]) * per_length) as usize;
+        let first = index(low).saturating_sub(1).max(1);
+        let last = index(high).saturating_add(3).min(self.shape[d] - 1);
         first..last.max(first)
     }
 }

@@ -31,8 +31,10 @@ mod generate;
 mod irregular;
 mod lattice;
 mod nearest;
+mod quality;
 mod section;
 
+pub use boundary::Closing;
 pub use census::Census;
 pub use clearance::Clearance;
 pub use cloud::{Cloud, NodeEdges, NodeKind};
@@ -41,4 +43,5 @@ pub use generate::{BYTES_PER_GRID_POINT, MAX_GRID_POINTS, generate, generate_wit
 pub use irregular::Displacements;
 pub use lattice::Lattice;
 pub use nearest::{Nearest, Scratch, TIE_REL};
+pub use quality::{CloudQuality, quality};
 pub use section::{ClearanceUnit, CloudParams, DEFAULT_SEED, Section};

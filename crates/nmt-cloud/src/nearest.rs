@@ -1,4 +1,4 @@
-//! The k nearest nodes, on a cell grid of our own; equal distances are settled by node number.
+//! The k nearest nodes, on cell grids of our own; equal distances are settled by node number.
 
 use nmt_geom::point::distance_squared;
 use nmt_geom::{Bbox, NodeId, Point};
@@ -12,15 +12,71 @@ pub const TIE_REL: f64 = 1.0e-9;
 /// Nodes a cell on average: fewer makes more cells to visit, more makes more distances to compute.
 const NODES_PER_CELL: f64 = 2.0;
 
-/// Finds the nodes nearest to a point, in O(k) for clouds of even density.
+/// A cell with more nodes than this gets a grid of its own, over their envelope.
+const MOST_IN_A_CELL: usize = 12;
+
+/// Grids within grids, at most; at each level the spacing may fall by the square root of the number of nodes.
+const MOST_LEVELS: u32 = 24;
+
+/// Nodes looked for within the first radius, as a multiple of those wanted: a cell's neighbours are not as dense.
+const EXPECTED: f64 = 1.4;
+
+/// Room of a look-up by radius, as a fraction: distances are rounded.
+const ROOM_REL: f64 = 1.0e-12;
+
+/// Says that a cell has no grid of its own.
+const NO_GRID: u32 = u32::MAX;
+
+/// Finds the nodes nearest to a point, in O(k) wherever the density is that of the surroundings; grids nest where it
+/// is not even.
 #[derive(Clone, Debug)]
 pub struct Nearest<'a> {
     xy: &'a [Point],
+    envelope: Bbox,
+    grids: Vec<Grid>,
+    starts: Vec<u32>,   // first entry of each cell, one more at the end of each grid
+    children: Vec<u32>, // grid of each cell, numbered as `starts`
+    entries: Vec<u32>,  // nodes by cell, ascending
+    places: Vec<Point>, // of the entries
+}
+
+/// Equal cells over an envelope.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
     origin: Point,
-    cell: [f64; 2],
-    shape: [usize; 2],
-    starts: Vec<u32>,
-    entries: Vec<u32>, // nodes by cell, ascending
+    per_length: [f64; 2], // cells per unit of length along x and y
+    side: f64,            // of a cell
+    shape: [u32; 2],
+    first: u32, // of its cells in `starts`
+    nests: bool,
+}
+
+impl Grid {
+    /// Square cells for `n` nodes within `envelope`; nodes along a line get a single row of them.
+    fn new(envelope: Bbox, n: usize, first: usize) -> Self {
+        let extent = [envelope.width(), envelope.height()].map(|e| if e > 0.0 { e } else { 0.0 });
+        let n_cells = (n as f64 / NODES_PER_CELL).max(1.0);
+        let side = (extent[0] * extent[1] / n_cells).sqrt().max(extent[0].max(extent[1]) / n_cells);
+        let side = if side.is_finite() && side > 0.0 { side } else { 1.0 };
+        let shape = extent.map(|e| ((e / side).ceil() as u32).clamp(1, n.max(1) as u32));
+        Self { origin: envelope.min, per_length: [1.0 / side; 2], side, shape, first: first as u32, nests: false }
+    }
+
+    fn n_cells(&self) -> usize {
+        self.shape[0] as usize * self.shape[1] as usize
+    }
+
+    /// Column (or row) of a coordinate; rises with it, whatever the rounding.
+    #[inline]
+    fn column(&self, v: f64, d: usize) -> u32 {
+        // Negative and NaN become 0.
+        (((v - self.origin[d]) * self.per_length[d]) as u32).min(self.shape[d] - 1)
+    }
+
+    #[inline]
+    fn cell_of(&self, p: Point) -> usize {
+        self.column(p[1], 1) as usize * self.shape[0] as usize + self.column(p[0], 0) as usize
+    }
 }
 
 /// Room for a search, to be used again for the next one.
@@ -31,37 +87,55 @@ pub struct Scratch {
 }
 
 impl<'a> Nearest<'a> {
-    /// Indexes the nodes at `xy`, shape (n_nodes, 2); coordinates must be finite.
+    /// Indexes the nodes at `xy`, shape (n_nodes, 2); coordinates must be finite. About 30 bytes a node.
     pub fn new(xy: &'a [Point]) -> Self {
-        let envelope = Bbox::of(xy.iter().copied());
-        let extent = [envelope.width(), envelope.height()].map(|e| if e > 0.0 { e } else { 0.0 });
-        let n_cells = (xy.len() as f64 / NODES_PER_CELL).max(1.0);
-        // Square cells; a cloud along a line gets a single row of them.
-        let side = (extent[0] * extent[1] / n_cells).sqrt().max(extent[0].max(extent[1]) / n_cells);
-        let side = if side.is_finite() && side > 0.0 { side } else { 1.0 };
-        let shape = extent.map(|e| ((e / side).ceil() as usize).clamp(1, xy.len().max(1)));
-        let cell: [f64; 2] = std::array::from_fn(|d| if extent[d] > 0.0 { extent[d] / shape[d] as f64 } else { side });
-        let mut nearest =
-            Self { xy, origin: envelope.min, cell, shape, starts: vec![0; shape[0] * shape[1] + 1], entries: vec![] };
-        let cells: Vec<u32> = xy.iter().map(|p| nearest.cell_of(*p) as u32).collect();
-        cells.iter().for_each(|&c| nearest.starts[c as usize + 1] += 1);
-        (0..shape[0] * shape[1]).for_each(|c| nearest.starts[c + 1] += nearest.starts[c]);
-        let mut next = nearest.starts.clone();
-        nearest.entries = vec![0; xy.len()];
-        for (node, &c) in cells.iter().enumerate() {
-            nearest.entries[next[c as usize] as usize] = node as u32;
-            next[c as usize] += 1;
-        }
+        let mut nearest = Self {
+            xy,
+            envelope: Bbox::of(xy.iter().copied()),
+            grids: Vec::new(),
+            starts: Vec::new(),
+            children: Vec::new(),
+            entries: (0..xy.len() as u32).collect(),
+            places: Vec::new(),
+        };
+        nearest.add_grid(0..xy.len(), MOST_LEVELS);
+        nearest.places = nearest.entries.iter().map(|&node| xy[node as usize]).collect();
         nearest
     }
 
-    fn column(&self, v: f64, d: usize) -> usize {
-        let c = (v - self.origin[d]) / self.cell[d];
-        if c > 0.0 { (c as usize).min(self.shape[d] - 1) } else { 0 }
-    }
-
-    fn cell_of(&self, p: Point) -> usize {
-        self.column(p[1], 1) * self.shape[0] + self.column(p[0], 0)
+    /// Sorts a range of the entries into the cells of a new grid, and crowded cells into grids of their own.
+    fn add_grid(&mut self, range: std::ops::Range<usize>, levels: u32) -> u32 {
+        let number = self.grids.len();
+        let xy = self.xy;
+        let nodes: Vec<u32> = self.entries[range.clone()].to_vec();
+        let envelope = Bbox::of(nodes.iter().map(|&node| xy[node as usize]));
+        let grid = Grid::new(envelope, nodes.len(), self.starts.len());
+        let (first, n_cells) = (grid.first as usize, grid.n_cells());
+        self.grids.push(grid);
+        self.starts.resize(first + n_cells + 1, 0);
+        self.children.resize(first + n_cells + 1, NO_GRID);
+        let starts = &mut self.starts[first..];
+        let cells: Vec<u32> = nodes.iter().map(|&node| grid.cell_of(xy[node as usize]) as u32).collect();
+        cells.iter().for_each(|&cell| starts[cell as usize] += 1);
+        let mut end = range.start as u32;
+        for start in starts.iter_mut() {
+            end += *start;
+            *start = end; // the end of the cell: filled from its back
+        }
+        for (&node, &cell) in nodes.iter().zip(&cells).rev() {
+            starts[cell as usize] -= 1;
+            self.entries[starts[cell as usize] as usize] = node;
+        }
+        drop((nodes, cells));
+        for cell in first..first + n_cells {
+            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+            let crowded = range.len() > MOST_IN_A_CELL && levels > 0 && n_cells > 1;
+            if crowded {
+                self.children[cell] = self.add_grid(range, levels - 1);
+                self.grids[number].nests = true;
+            }
+        }
+        number as u32
     }
 
     /// The `k` nodes nearest to `p` among those that `accept` lets pass, by node number, into `out`; fewer where there
@@ -88,38 +162,38 @@ impl<'a> Nearest<'a> {
     ) {
         out.clear();
         let Scratch { pending, accepted } = scratch;
-        pending.clear();
         accepted.clear();
         if k == 0 || self.xy.is_empty() {
             return;
         }
-        let home = [self.column(p[0], 0), self.column(p[1], 1)];
-        let mut ring = 0;
+        // What lies within `radius` is met and asked about in order; then the ring out to the next radius.
+        let mut radius = self.first_radius(p, k);
+        let mut asked = -1.0; // square of the radius within which all have been asked about
         loop {
-            self.visit_ring(home, ring, |node| pending.push((distance_squared(p, self.xy[node as usize]), node)));
-            let complete = self.complete_radius(p, home, ring);
-            // What lies within the complete radius is nearer than all that may still come: it is asked in order.
-            let limit = if complete > 0.0 { complete * complete } else { -1.0 };
-            let is_in = |candidate: &(f64, u32)| candidate.0 <= limit;
-            let n_in = partition(pending, is_in);
-            if accepted.len() + n_in >= k || complete == f64::INFINITY {
-                pending[..n_in].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                for &(d2, node) in &pending[..n_in] {
-                    let enough = accepted.len() >= k && d2 > tied_square(accepted[k - 1].0);
-                    if enough {
-                        break;
-                    }
-                    if accept(NodeId(node)) {
-                        accepted.push((d2, node));
-                    }
+            let all = self.reaches_all(p, radius);
+            let within = if all { f64::INFINITY } else { radius * radius };
+            pending.clear();
+            self.visit_all(p, radius, &mut |node, place| {
+                let d2 = distance_squared(p, place);
+                if d2 > asked && d2 <= within {
+                    pending.push((d2, node));
                 }
-                pending.drain(..n_in);
-                let known = accepted.len() >= k && tied_square(accepted[k - 1].0) <= limit;
-                if known || complete == f64::INFINITY {
+            });
+            pending.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for &(d2, node) in pending.iter() {
+                if accepted.len() >= k && d2 > tied_square(accepted[k - 1].0) {
                     break;
                 }
+                if accept(NodeId(node)) {
+                    accepted.push((d2, node));
+                }
             }
-            ring += 1;
+            if all || accepted.len() >= k && tied_square(accepted[k - 1].0) <= within {
+                break;
+            }
+            asked = within;
+            let growth = (EXPECTED * k as f64 / (accepted.len().max(1) as f64)).sqrt();
+            radius *= growth.clamp(1.25, 2.0);
         }
         if accepted.len() > k {
             // Nodes surely nearer than the k-th belong; the smallest numbers of those at its distance fill up.
@@ -132,59 +206,91 @@ impl<'a> Nearest<'a> {
         out.sort_unstable();
     }
 
-    /// Calls `visit` with the nodes of the cells at Chebyshev distance `ring` from `home`.
-    fn visit_ring(&self, home: [usize; 2], ring: usize, mut visit: impl FnMut(u32)) {
-        let [c, r] = home.map(|v| v as isize);
-        let ring = ring as isize;
-        let columns = (c - ring).max(0)..=(c + ring).min(self.shape[0] as isize - 1);
-        let mut row = |row: isize, from: isize, to: isize| {
-            let first = row as usize * self.shape[0] + from as usize;
-            let last = row as usize * self.shape[0] + to as usize;
-            let entries = self.starts[first] as usize..self.starts[last + 1] as usize;
-            self.entries[entries].iter().for_each(|&node| visit(node));
-        };
-        for j in (r - ring).max(0)..=(r + ring).min(self.shape[1] as isize - 1) {
-            if (j - r).abs() == ring {
-                row(j, *columns.start(), *columns.end());
-            } else {
-                [c - ring, c + ring].into_iter().filter(|i| columns.contains(i)).for_each(|i| row(j, i, i));
+    /// Distance of `p` from the nearest node; infinite where there is none.
+    pub fn distance(&self, p: Point) -> f64 {
+        if self.xy.is_empty() {
+            return f64::INFINITY;
+        }
+        let mut radius = self.first_radius(p, 1);
+        loop {
+            let mut least = f64::INFINITY;
+            self.visit_all(p, radius, &mut |_, place| least = least.min(distance_squared(p, place)));
+            let least = least.sqrt();
+            if least <= radius || self.reaches_all(p, radius) {
+                return least;
+            }
+            radius *= 2.0;
+        }
+    }
+
+    /// A radius that holds about [`EXPECTED`]·k nodes if all are as dense as in the cell of `p`, and reaches the envelope.
+    pub(crate) fn first_radius(&self, p: Point, k: usize) -> f64 {
+        let mut grid = &self.grids[0];
+        loop {
+            let cell = grid.first as usize + grid.cell_of(p);
+            match self.grids.get(self.children[cell] as usize) {
+                Some(finer) => grid = finer,
+                None => break,
+            }
+        }
+        let by_density = grid.side * (EXPECTED * k as f64 / (NODES_PER_CELL * std::f64::consts::PI)).sqrt();
+        // From outside nothing is met before the envelope.
+        let outside =
+            (0..2).fold(0.0f64, |most, d| most.max(self.envelope.min[d] - p[d]).max(p[d] - self.envelope.max[d]));
+        by_density + outside.max(0.0)
+    }
+
+    /// True where the square of half side `radius` about `p` holds every node.
+    pub(crate) fn reaches_all(&self, p: Point, radius: f64) -> bool {
+        (0..2).all(|d| p[d] - radius <= self.envelope.min[d] && self.envelope.max[d] <= p[d] + radius)
+            || !radius.is_finite()
+    }
+
+    /// Calls `visit` with every node nearer to `p` than `radius`, and some more.
+    #[inline]
+    pub(crate) fn visit_all(&self, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+        self.visit(0, p, radius * (1.0 + ROOM_REL), visit);
+    }
+
+    /// Calls `visit` with every node of the cells that the square of half side `radius` about `p` meets.
+    #[inline]
+    fn visit(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+        let grid = &self.grids[grid as usize];
+        let [from, to] = [-radius, radius].map(|r| [grid.column(p[0] + r, 0), grid.column(p[1] + r, 1)]);
+        for row in from[1]..=to[1] {
+            let row = grid.first as usize + row as usize * grid.shape[0] as usize;
+            let cells = row + from[0] as usize..row + to[0] as usize + 1;
+            if !grid.nests {
+                self.visit_entries(cells, visit);
+                continue;
+            }
+            for cell in cells {
+                match self.children[cell] {
+                    NO_GRID => self.visit_entries(cell..cell + 1, visit),
+                    finer => self.visit_nested(finer, p, radius, visit),
+                }
             }
         }
     }
 
-    /// Every node nearer to `p` than this has been visited once rings 0 to `ring` have; infinite when all cells have.
-    fn complete_radius(&self, p: Point, home: [usize; 2], ring: usize) -> f64 {
-        let mut radius = f64::INFINITY;
-        for d in 0..2 {
-            if home[d] > ring {
-                let wall = self.origin[d] + (home[d] - ring) as f64 * self.cell[d];
-                radius = radius.min(p[d] - wall);
-            }
-            if home[d] + ring + 1 < self.shape[d] {
-                let wall = self.origin[d] + (home[d] + ring + 1) as f64 * self.cell[d];
-                radius = radius.min(wall - p[d]);
-            }
-        }
-        // Cells are found by division, walls by multiplication: leave room for their rounding.
-        radius - 1e-12 * (self.cell[0] + self.cell[1])
+    /// [`Self::visit`] where it calls itself.
+    #[inline(never)]
+    fn visit_nested(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+        self.visit(grid, p, radius, visit);
+    }
+
+    /// The nodes of neighbouring cells of one row.
+    #[inline]
+    fn visit_entries(&self, cells: std::ops::Range<usize>, visit: &mut impl FnMut(u32, Point)) {
+        let range = self.starts[cells.start] as usize..self.starts[cells.end] as usize;
+        let entries = self.entries[range.clone()].iter().zip(&self.places[range]);
+        entries.for_each(|(&node, &place)| visit(node, place));
     }
 }
 
 /// The square of (1 + 1e-9) times a distance, from its square.
 fn tied_square(d2: f64) -> f64 {
-    (d2.sqrt() * (1.0 + TIE_REL)).powi(2)
-}
-
-/// Brings the elements that hold to the front; returns how many they are.
-fn partition<T: Copy>(list: &mut [T], holds: impl Fn(&T) -> bool) -> usize {
-    let mut n = 0;
-    for k in 0..list.len() {
-        if holds(&list[k]) {
-            list.swap(n, k);
-            n += 1;
-        }
-    }
-    n
+    d2 * ((1.0 + TIE_REL) * (1.0 + TIE_REL))
 }
 
 #[cfg(test)]
@@ -227,6 +333,47 @@ mod tests {
                 prop_assert_eq!(&out, &by_brute_force(&xy, centre, k));
             }
         }
+    }
+
+    #[test]
+    fn clouds_of_very_uneven_density_are_searched_as_even_ones() {
+        // Spacing 1 : 10⁶, a dense line, a far outlier, and twenty nodes at one place.
+        let mut xy: Vec<Point> = (0..600)
+            .map(|k| {
+                let (r, t) = (1e-6_f64.powf(f64::from(k % 30) / 30.0), f64::from(k / 30) * 0.314);
+                [r * t.cos(), r * t.sin()]
+            })
+            .collect();
+        xy.extend((0..500).map(|k| [2.0, 1e-4 * f64::from(k)]));
+        xy.push([1e3, -1e3]);
+        xy.extend([[0.5, 0.5]; 20]);
+        let nearest = Nearest::new(&xy);
+        let (mut scratch, mut out) = (Scratch::default(), Vec::new());
+        for p in xy.iter().step_by(7).copied().chain([[0.0, 0.0], [500.0, 0.0], [-1e6, 3.0], [0.5, 0.5]]) {
+            for k in [1, 9, 30] {
+                nearest.nearest(p, k, |_| true, &mut scratch, &mut out);
+                assert_eq!(out, by_brute_force(&xy, p, k), "{p:?}, k = {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_graded_cloud_is_searched_without_meeting_many_nodes() {
+        // Spacing grows 1000-fold from the origin.
+        let n = 200;
+        let pull = |v: usize| (1e-3_f64.ln() * (1.0 - v as f64 / n as f64)).exp();
+        let xy: Vec<Point> = (0..n * n)
+            .map(|k| {
+                let (r, t) = (pull(k % n), (k / n) as f64 / n as f64);
+                [r * t.cos(), r * t.sin()]
+            })
+            .collect();
+        let nearest = Nearest::new(&xy);
+        let mut met = 0;
+        for p in &xy {
+            nearest.visit(0, *p, nearest.first_radius(*p, 9), &mut |_, _| met += 1);
+        }
+        assert!(met < 80 * xy.len(), "{met}"); // an even cloud: 30
     }
 
     #[test]

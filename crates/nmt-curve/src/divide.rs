@@ -42,16 +42,18 @@ impl Division {
     }
 }
 
-/// Nodes on an edge by one of the rules.
+/// Nodes on a curve at equal straight distances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeNodes {
     /// The nodes, ends included (closed: once around), shape (n − left_out,), user's length unit.
     pub nodes: Vec<Point>,
     /// Arc length from the first point to each, as a fraction of the whole: from 0 to 1 (closed: below 1).
     pub fractions: Vec<f64>,
-    /// Nodes that no longer fitted between the last one and the end; 0 by arc length.
+    /// The straight distance h = L/(n − 1) (closed: L/n) from each node to the next, user's length unit.
+    pub chord: f64,
+    /// Nodes that no longer fitted between the last one and the end.
     pub left_out: usize,
-    /// By how much the last chord misses the length of the others, user's length unit; 0 by arc length.
+    /// By how much the last chord misses the length of the others, user's length unit.
     pub closing_error: f64,
 }
 
@@ -99,8 +101,8 @@ pub fn divide_by_chords(curve: &Curve, n: usize) -> Result<EdgeNodes, CurveError
     let segments = segments(curve, n)?;
     let table = ArcTable::new(curve)?;
     let (length, chord) = (table.length(), table.length() / segments as f64);
-    let mut divided =
-        EdgeNodes { nodes: vec![curve.point(0.0)], fractions: vec![0.0], left_out: 0, closing_error: 0.0 };
+    let (nodes, fractions) = (vec![curve.point(0.0)], vec![0.0]);
+    let mut divided = EdgeNodes { nodes, fractions, chord, left_out: 0, closing_error: 0.0 };
     let mut s = 0.0;
     for k in 1..segments {
         let Some(next) = first_at_distance(&table, s, chord) else {
@@ -276,7 +278,7 @@ mod tests {
         assert!(distance(three.nodes[1], [3.774_170_532_272_055, -0.591_225_794_956_115_5]) < 1e-10);
         assert!((three.closing_error - 1.242_465_630_457_745_2).abs() < 1e-10);
         let four = divide_by_chords(&wave, 4).unwrap();
-        assert!(distance(four.nodes[2], [4.458_563_570_070_100, -0.967_958_912_952_076_9]) < 1e-10);
+        assert!(distance(four.nodes[2], [4.458_563_570_070_1, -0.967_958_912_952_076_9]) < 1e-10);
         assert_eq!((four.left_out, four.nodes.len(), four.fractions[3]), (0, 4, 1.0));
         // Two nodes: only the ends, and the chord misses the length by all that the wave is longer.
         let two = divide_by_chords(&wave, 2).unwrap();

@@ -3,7 +3,6 @@
 use crate::bbox::Bbox;
 use crate::error::GeomError;
 use crate::ids::{EdgeId, LoopId, NodeId};
-use crate::locate::Locator;
 use crate::point::Point;
 use crate::region::{Region, RegionFault};
 use crate::ring;
@@ -39,6 +38,7 @@ pub struct RealBoundary {
     xy: Vec<Point>,          // shape (n_boundary, 2)
     segments: Vec<Segment>,  // loop after loop, in order
     loop_starts: Vec<usize>, // first segment of each loop, shape (n_loops + 1,)
+    index: SegmentIndex,
 }
 
 impl RealBoundary {
@@ -51,7 +51,8 @@ impl RealBoundary {
         if let Some(node) = xy.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
             return Err(GeomError::NotFinite { node, at: xy[node] });
         }
-        let mut boundary = Self { segments: Vec::with_capacity(xy.len()), xy, loop_starts: vec![0] };
+        let segments = Vec::with_capacity(xy.len());
+        let mut boundary = Self { segments, xy, loop_starts: vec![0], index: SegmentIndex::new([]) };
         for (k, BoundaryLoop { nodes, edges }) in loops.into_iter().enumerate() {
             let n = nodes.len();
             if n < 3 {
@@ -75,6 +76,7 @@ impl RealBoundary {
             }
             boundary.loop_starts.push(boundary.segments.len());
         }
+        boundary.index = SegmentIndex::new(boundary.all_ends());
         Ok(boundary)
     }
 
@@ -144,20 +146,15 @@ impl RealBoundary {
         Bbox::of(self.xy.iter().copied())
     }
 
-    /// A look-up of where points lie.
-    pub fn locator(&self) -> Locator {
-        Locator::new(self.all_ends())
-    }
-
-    /// An index of the segments, by their numbers in [`Self::segments`].
-    pub fn segment_index(&self) -> SegmentIndex {
-        SegmentIndex::new(self.all_ends())
+    /// The segments by their numbers in [`Self::segments`]: which are near, and where a point lies.
+    pub fn index(&self) -> &SegmentIndex {
+        &self.index
     }
 
     /// What is wrong with the polygon: a boundary too coarse for its curves crosses itself.
     pub fn faults(&self) -> Vec<RegionFault> {
         let mut loops = (0..self.n_loops()).map(|k| self.polygon(LoopId::of(k)));
-        Region { contour: loops.next().unwrap_or_default(), holes: loops.collect() }.faults(0.0)
+        Region { contour: loops.next().unwrap_or_default(), holes: loops.collect() }.faults_with(&self.index, 0.0)
     }
 }
 

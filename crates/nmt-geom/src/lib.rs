@@ -44,5 +44,5 @@ pub use ids::{EdgeId, LoopId, NodeId, SubdomainId, TriId};
 pub use locate::{Location, Locator};
 pub use point::Point;
 pub use predicates::side;
-pub use region::{Region, RegionFault, overlap};
+pub use region::{IndexedRegion, Region, RegionFault, overlap};
 pub use segment_index::SegmentIndex;

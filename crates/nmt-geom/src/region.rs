@@ -2,7 +2,7 @@
 
 use crate::bbox::Bbox;
 use crate::ids::LoopId;
-use crate::locate::{Location, Locator};
+use crate::locate::{Crossing, Location, Locator};
 use crate::point::{Point, along, sub};
 use crate::ring::{self, sides};
 use crate::segment;
@@ -95,7 +95,17 @@ impl Region {
     /// assert!(matches!(bow_tie.faults(1e-9)[0], RegionFault::SelfIntersection { at: [0.5, 0.5], .. }));
     /// ```
     pub fn faults(&self, tolerance: f64) -> Vec<RegionFault> {
-        let mut faults = self.meeting_loops(tolerance);
+        self.faults_with(&self.segment_index(), tolerance)
+    }
+
+    /// An index of the sides, loop after loop, each side by the number of its first corner.
+    pub fn segment_index(&self) -> SegmentIndex {
+        SegmentIndex::new(self.loops().flat_map(|ring| sides(ring)).map(|(a, b)| [a, b]))
+    }
+
+    /// [`Self::faults`] with the index of its sides.
+    pub(crate) fn faults_with(&self, index: &SegmentIndex, tolerance: f64) -> Vec<RegionFault> {
+        let mut faults = self.meeting_loops(index, tolerance);
         let size = self.loops().flatten().fold(Bbox::EMPTY, |mut envelope, p| {
             envelope.include(*p);
             envelope
@@ -108,32 +118,33 @@ impl Region {
                 faults.push(RegionFault::ZeroArea { ring: LoopId::of(k) });
             }
         }
-        self.misplaced_holes(&mut faults);
+        self.misplaced_holes(index, &mut faults);
         faults
     }
 
-    fn meeting_loops(&self, tolerance: f64) -> Vec<RegionFault> {
-        struct Side {
-            ring: usize,
-            number: usize,
-        }
-        let names: Vec<Side> = self
-            .loops()
-            .enumerate()
-            .flat_map(|(ring, corners)| (0..corners.len()).map(move |number| Side { ring, number }))
-            .collect();
-        let index = SegmentIndex::new(self.loops().flat_map(|ring| sides(ring)).map(|(a, b)| [a, b]));
+    /// The loop and the number in it of every side of the index.
+    fn sides_by_number(&self) -> Vec<Side> {
+        let of_loop = |(ring, corners): (usize, &Vec<Point>)| {
+            let side = move |number: usize| Side { ring, number };
+            (0..corners.len()).map(side)
+        };
+        self.loops().enumerate().flat_map(of_loop).collect()
+    }
+
+    fn meeting_loops(&self, index: &SegmentIndex, tolerance: f64) -> Vec<RegionFault> {
+        let names = self.sides_by_number();
+        let lengths: Vec<usize> = self.loops().map(Vec::len).collect();
         let mut faults: Vec<RegionFault> = Vec::new();
         let mut reported = std::collections::BTreeSet::new();
         for [i, j] in index.close_pairs(tolerance) {
-            let (s, t) = (&names[i], &names[j]);
+            let (s, t) = (names[i], names[j]);
             if reported.contains(&(s.ring, t.ring)) {
                 continue;
             }
             let ([a, b], [c, d]) = (index.segment(i), index.segment(j));
             let at = if s.ring == t.ring {
-                let n = self.loops().nth(s.ring).map_or(0, Vec::len);
-                own_sides_meet([a, b], [c, d], t.number == s.number + 1, s.number == 0 && t.number == n - 1)
+                let last = lengths[s.ring] - 1;
+                own_sides_meet([a, b], [c, d], t.number == s.number + 1, s.number == 0 && t.number == last)
             } else {
                 sides_meet([a, b], [c, d], tolerance)
             };
@@ -151,35 +162,49 @@ impl Region {
     }
 
     /// Holes that meet no other loop, yet lie outside the contour or in another hole: one corner decides.
-    fn misplaced_holes(&self, faults: &mut Vec<RegionFault>) {
-        let meets = |hole: usize, faults: &[RegionFault]| {
-            faults.iter().any(|f| match f {
-                RegionFault::HoleMeetsContour { hole: h, .. } => *h == hole,
-                RegionFault::HolesMeet { holes, .. } => holes.contains(&hole),
-                _ => false,
-            })
-        };
-        let ring_locator = |ring: &[Point]| Locator::new(sides(ring).map(|(a, b)| [a, b]));
-        let contour = ring_locator(&self.contour);
-        let holes: Vec<_> =
-            self.holes.iter().map(|hole| (ring_locator(hole), Bbox::of(hole.iter().copied()))).collect();
-        for (k, hole) in self.holes.iter().enumerate() {
-            let Some(&corner) = hole.first() else { continue };
-            if meets(k, faults) {
-                continue;
+    ///
+    /// A ray from it crosses the loops around it an odd number of times.
+    fn misplaced_holes(&self, index: &SegmentIndex, faults: &mut Vec<RegionFault>) {
+        let mut meets = vec![false; self.holes.len()];
+        for fault in faults.iter() {
+            match fault {
+                RegionFault::HoleMeetsContour { hole, .. } => meets[*hole] = true,
+                RegionFault::HolesMeet { holes, .. } => holes.iter().for_each(|hole| meets[*hole] = true),
+                _ => {}
             }
-            if contour.locate(corner) == Location::Outside {
+        }
+        let sides = self.sides_by_number();
+        let mut crossed: Vec<usize> = Vec::new();
+        for (k, hole) in self.holes.iter().enumerate() {
+            let (Some(&corner), false) = (hole.first(), meets[k]) else { continue };
+            crossed.clear();
+            index.crossed_by_ray(corner, |crossing, side| {
+                if crossing == Crossing::Right {
+                    crossed.push(sides[side].ring);
+                }
+                false
+            });
+            crossed.sort_unstable();
+            let around = |ring: usize| crossed.iter().filter(|other| **other == ring).count() % 2 == 1;
+            if !around(0) {
                 faults.push(RegionFault::HoleOutside { hole: k });
                 continue;
             }
-            let outer = holes.iter().enumerate().find(|(other, (locator, envelope))| {
-                *other != k && envelope.contains(corner, 0.0) && locator.locate(corner) == Location::Inside
-            });
-            if let Some((outer, _)) = outer {
-                faults.push(RegionFault::HoleInHole { inner: k, outer });
+            let mut others = crossed.clone();
+            others.dedup();
+            let outer = others.into_iter().find(|&r| r > 0 && r != k + 1 && around(r));
+            if let Some(ring) = outer {
+                faults.push(RegionFault::HoleInHole { inner: k, outer: ring - 1 });
             }
         }
     }
+}
+
+/// A side of a region's polygons.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    ring: usize,
+    number: usize,
 }
 
 /// Where two sides of one loop meet, apart from the corner that neighbours share.
@@ -207,38 +232,79 @@ fn sides_meet(s: [Point; 2], t: [Point; 2], tolerance: f64) -> Option<Point> {
         .map(|(p, _)| p)
 }
 
+/// A region with an index of its sides, to be compared with many others.
+#[derive(Clone, Debug)]
+pub struct IndexedRegion {
+    index: SegmentIndex,
+    contour: Bbox,
+}
+
+impl IndexedRegion {
+    /// Indexes the sides of a region; O(n log n).
+    pub fn new(region: &Region) -> Self {
+        Self { index: region.segment_index(), contour: region.envelope() }
+    }
+
+    /// Envelope of the main contour.
+    pub fn envelope(&self) -> Bbox {
+        self.contour
+    }
+
+    /// True where `p` is inside and no side is nearer than `depth`.
+    fn holds_deep(&self, p: Point, depth: f64) -> bool {
+        self.index.locate(p) == Location::Inside && !self.index.any_within(p, depth)
+    }
+
+    /// The sides whose boxes meet `window`, in order.
+    fn sides_in(&self, window: &Bbox) -> Vec<[Point; 2]> {
+        let mut numbers = Vec::new();
+        self.index.any_in(window, |k| {
+            numbers.push(k);
+            false
+        });
+        numbers.sort_unstable();
+        numbers.into_iter().map(|k| self.index.segment(k)).collect()
+    }
+}
+
 /// A point that lies in the interior of both regions by more than about `tolerance`; `None` where they are apart,
-/// adjacent, or one fills a hole of the other.
+/// adjacent, or one fills a hole of the other. O(m log n), m the sides of either within the envelope of the other.
 ///
 /// Both regions must be free of [`Region::faults`].
-pub fn overlap(a: &Region, b: &Region, tolerance: f64) -> Option<Point> {
+///
+/// ```
+/// use nmt_geom::{IndexedRegion, Region, overlap};
+/// let square = |x: f64| {
+///     let contour = vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+///     IndexedRegion::new(&Region { contour, holes: vec![] })
+/// };
+/// assert_eq!(overlap(&square(0.0), &square(1.0), 1e-9), None); // a common side
+/// assert!(overlap(&square(0.0), &square(0.9), 1e-9).is_some());
+/// ```
+pub fn overlap(a: &IndexedRegion, b: &IndexedRegion, tolerance: f64) -> Option<Point> {
     if !a.envelope().overlaps(&b.envelope(), 0.0) {
         return None;
     }
-    let deep_inside = |region: &Region| {
-        let locator = region.locator();
-        let index = SegmentIndex::new(region.loops().flat_map(|ring| sides(ring)).map(|(p, q)| [p, q]));
-        move |p: Point| locator.locate(p) == Location::Inside && !index.any_within(p, tolerance)
-    };
-    let (in_a, in_b) = (deep_inside(a), deep_inside(b));
     // Where two sides cross, the points just beside the crossing, in the four quadrants, decide: one of them is inside
     // both regions unless the crossing is the noise of a common edge. Otherwise one region holds the other's corners,
     // or both are the same: a point beside each side, on its inner side, decides.
-    let crossings = proper_crossings(a, b, tolerance);
+    let sides_of_a = a.sides_in(&b.envelope().grown([tolerance; 2]));
+    let sides_of_b = b.sides_in(&a.envelope().grown([tolerance; 2]));
+    let in_both = |p: &Point| a.holds_deep(*p, tolerance) && b.holds_deep(*p, tolerance);
+    let crossings = proper_crossings(a, &sides_of_b, tolerance);
     crossings
         .into_iter()
         .flat_map(|(at, reach)| quadrants(at, reach))
-        .chain(inner_points(a, tolerance))
-        .chain(inner_points(b, tolerance))
-        .find(|&p| in_a(p) && in_b(p))
+        .find(in_both)
+        .or_else(|| sides_of_a.into_iter().flat_map(|side| points_beside(side, tolerance)).find(in_both))
+        .or_else(|| sides_of_b.into_iter().flat_map(|side| points_beside(side, tolerance)).find(in_both))
 }
 
-fn proper_crossings(a: &Region, b: &Region, tolerance: f64) -> Vec<(Point, [Point; 2])> {
-    let index = SegmentIndex::new(a.loops().flat_map(|ring| sides(ring)).map(|(p, q)| [p, q]));
+fn proper_crossings(a: &IndexedRegion, sides: &[[Point; 2]], tolerance: f64) -> Vec<(Point, [Point; 2])> {
     let mut found = Vec::new();
-    for (c, d) in b.loops().flat_map(|ring| sides(ring)) {
-        index.candidates(c, d, tolerance, |k| {
-            let [p, q] = index.segment(k);
+    for &[c, d] in sides {
+        a.index.candidates(c, d, tolerance, |k| {
+            let [p, q] = a.index.segment(k);
             if segment::cross_properly(p, q, c, d, tolerance) {
                 found.push((segment::meeting_point(p, q, c, d), [sub(q, p), sub(d, c)]));
             }
@@ -258,29 +324,16 @@ fn quadrants(at: Point, directions: [Point; 2]) -> Vec<Point> {
     points
 }
 
-/// A point beside the middle of every side, inside the region, at several depths.
-fn inner_points(region: &Region, tolerance: f64) -> Vec<Point> {
-    let locator = region.locator();
-    let mut points = Vec::new();
-    for ring in region.loops() {
-        for (p, q) in sides(ring) {
-            let (v, middle) = (sub(q, p), along(p, 0.5, sub(q, p)));
-            let length = v[0].hypot(v[1]);
-            if length <= tolerance {
-                continue;
-            }
-            let normal = [-v[1] / length, v[0] / length];
-            for depth in [0.1 * length, 4.0 * tolerance] {
-                for side in [depth, -depth] {
-                    let inner = along(middle, side, normal);
-                    if locator.locate(inner) == Location::Inside {
-                        points.push(inner);
-                    }
-                }
-            }
-        }
+/// Points beside the middle of a side, on either side of it, at two depths.
+fn points_beside([p, q]: [Point; 2], tolerance: f64) -> Vec<Point> {
+    let (v, middle) = (sub(q, p), along(p, 0.5, sub(q, p)));
+    let length = v[0].hypot(v[1]);
+    if length <= tolerance {
+        return Vec::new();
     }
-    points
+    let normal = [-v[1] / length, v[0] / length];
+    let depths = [0.1 * length, 4.0 * tolerance];
+    depths.into_iter().flat_map(|depth| [depth, -depth]).map(|side| along(middle, side, normal)).collect()
 }
 
 #[cfg(test)]
@@ -293,6 +346,35 @@ mod tests {
 
     fn region(contour: Vec<Point>, holes: Vec<Vec<Point>>) -> Region {
         Region { contour, holes }
+    }
+
+    fn common_point(a: &Region, b: &Region) -> Option<Point> {
+        overlap(&IndexedRegion::new(a), &IndexedRegion::new(b), 1e-8)
+    }
+
+    #[test]
+    fn a_plate_with_thousands_of_holes_is_checked_quickly() {
+        // Each pair of loops would be 10⁸ comparisons: this takes some hundredths of a second.
+        let n = 100;
+        let place = |k: usize| ((k % n) as f64, (k / n) as f64);
+        let mut holes: Vec<Vec<Point>> =
+            (0..n * n).map(|k| square(place(k).0 + 0.25, place(k).1 + 0.25, 0.5)).collect();
+        let plate = |holes: &[Vec<Point>]| region(square(0.0, 0.0, n as f64), holes.to_vec());
+        assert_eq!(plate(&holes).faults(1e-9), vec![]);
+        let whole = plate(&holes);
+        let indexed = IndexedRegion::new(&whole);
+        for hole in holes.iter().step_by(7) {
+            assert_eq!(overlap(&indexed, &IndexedRegion::new(&region(hole.clone(), vec![])), 1e-7), None);
+        }
+        // One hole in another, one beyond the plate, two that share a side.
+        holes[5000] = square(place(5001).0 + 0.3, place(5001).1 + 0.3, 0.1);
+        holes[17] = square(-2.0, -2.0, 0.5);
+        holes[9999] = square(place(9998).0 + 0.75, place(9998).1 + 0.25, 0.5);
+        let faults = plate(&holes).faults(1e-9);
+        assert!(faults.contains(&RegionFault::HoleInHole { inner: 5000, outer: 5001 }), "{faults:?}");
+        assert!(faults.contains(&RegionFault::HoleOutside { hole: 17 }), "{faults:?}");
+        assert!(matches!(faults[0], RegionFault::HolesMeet { holes: [9998, 9999], .. }), "{faults:?}");
+        assert_eq!(faults.len(), 3);
     }
 
     #[test]
@@ -339,9 +421,9 @@ mod tests {
         let a = region(square(0.0, 0.0, 2.0), vec![square(0.5, 0.5, 1.0)]);
         let beside = region(vec![[2.0, 0.0], [4.0, 0.0], [2.0, 2.0]], vec![]);
         let inclusion = region(square(0.5, 0.5, 1.0), vec![]);
-        assert_eq!(overlap(&a, &beside, 1e-8), None);
-        assert_eq!(overlap(&a, &inclusion, 1e-8), None);
-        assert_eq!(overlap(&inclusion, &a, 1e-8), None);
+        assert_eq!(common_point(&a, &beside), None);
+        assert_eq!(common_point(&a, &inclusion), None);
+        assert_eq!(common_point(&inclusion, &a), None);
     }
 
     #[test]
@@ -349,10 +431,10 @@ mod tests {
         let a = region(square(0.0, 0.0, 2.0), vec![]);
         for b in [square(1.0, 1.0, 2.0), square(0.5, 0.5, 1.0), square(0.0, 0.0, 2.0), square(0.0, 0.0, 1.0)] {
             let b = region(b, vec![]);
-            assert!(overlap(&a, &b, 1e-8).is_some(), "{b:?}");
-            assert!(overlap(&b, &a, 1e-8).is_some(), "{b:?}");
+            assert!(common_point(&a, &b).is_some(), "{b:?}");
+            assert!(common_point(&b, &a).is_some(), "{b:?}");
         }
         let cross = region(vec![[-1.0, 0.5], [3.0, 0.5], [3.0, 1.5], [-1.0, 1.5]], vec![]);
-        assert!(overlap(&a, &cross, 1e-8).is_some());
+        assert!(common_point(&a, &cross).is_some());
     }
 }

@@ -5,7 +5,7 @@ use crate::locate::{Crossing, Location, ray_crossing};
 use crate::point::Point;
 use crate::segment;
 
-/// Segments in a leaf: more tests segments in vain, fewer tests boxes in vain.
+/// Consecutive segments in a leaf: along a polygon they lie together, so that only every fourth has to be sorted.
 const LEAF: usize = 4;
 
 /// Boxes are looked up with this much room, as a fraction of the coordinates: a segment exactly at a distance that is
@@ -13,21 +13,22 @@ const LEAF: usize = 4;
 const ROOM_REL: f64 = 1.0e-14;
 
 /// Finds the segments near a point or a line in O(log n), whatever their lengths and however unevenly they lie.
-#[derive(Clone, Debug)]
+///
+/// Segments that follow each other should lie near each other, as along a polygon.
+#[derive(Clone, Debug, PartialEq)]
 pub struct SegmentIndex {
-    segments: Vec<[Point; 2]>, // by number
-    order: Vec<u32>,           // numbers, leaf by leaf
-    boxes: Vec<TreeBox>,       // depth first: a box, what is in its first half, what is in its second half
+    segments: Vec<[Point; 2]>,
+    boxes: Vec<TreeBox>, // depth first: a box, what is in its first half, what is in its second half
     envelope: Bbox,
     room: f64,
 }
 
 /// A box of the tree.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct TreeBox {
     envelope: Bbox,
     after: u32, // the box to go on with where this one is passed over
-    first: u32, // in `order`
+    first: u32, // segment of a leaf
     count: u32, // segments in a leaf, 0 in an inner box
 }
 
@@ -35,17 +36,24 @@ impl SegmentIndex {
     /// Indexes `segments`; they keep their numbers 0, 1, …. O(n log n).
     pub fn new(segments: impl IntoIterator<Item = [Point; 2]>) -> Self {
         let segments: Vec<_> = segments.into_iter().collect();
-        let envelope = Bbox::of(segments.iter().flatten().copied());
+        let mut leaves: Vec<TreeBox> = segments
+            .chunks(LEAF)
+            .enumerate()
+            .map(|(k, run)| TreeBox {
+                envelope: Bbox::of(run.iter().flatten().copied()),
+                after: 0,
+                first: (k * LEAF) as u32,
+                count: run.len() as u32,
+            })
+            .collect();
+        let envelope = leaves.iter().fold(Bbox::EMPTY, |all, leaf| all.union(leaf.envelope));
         let magnitude = envelope.min.iter().chain(&envelope.max).fold(0.0f64, |most, c| most.max(c.abs()));
-        let mut order: Vec<u32> = (0..segments.len() as u32).collect();
-        let mut boxes = Vec::with_capacity(2 * segments.len() / LEAF + 1);
-        if !segments.is_empty() {
-            let middles: Vec<Point> =
-                segments.iter().map(|[a, b]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]).collect();
-            split(&segments, &middles, &mut order, 0, &mut boxes);
+        let mut boxes = Vec::with_capacity(2 * leaves.len());
+        if !leaves.is_empty() {
+            split(&mut leaves, &mut boxes);
         }
         let room = if magnitude.is_finite() { ROOM_REL * magnitude } else { 0.0 };
-        Self { segments, order, boxes, envelope, room }
+        Self { segments, boxes, envelope, room }
     }
 
     /// Number of segments.
@@ -71,19 +79,18 @@ impl SegmentIndex {
     /// True where `holds` does for one of the segments whose boxes share a point with `window`; it is asked until then.
     #[inline]
     pub fn any_in(&self, window: &Bbox, mut holds: impl FnMut(usize) -> bool) -> bool {
-        self.any_in_boxes(|b| b.overlaps(window, self.room), |k| holds(k))
+        self.any_in_boxes(|b| b.envelope.overlaps(window, self.room), &mut holds)
     }
 
     #[inline]
-    fn any_in_boxes(&self, enter: impl Fn(&Bbox) -> bool, mut holds: impl FnMut(usize) -> bool) -> bool {
+    fn any_in_boxes(&self, enter: impl Fn(&TreeBox) -> bool, mut holds: impl FnMut(usize) -> bool) -> bool {
         let mut at = 0;
         while let Some(b) = self.boxes.get(at) {
-            if !enter(&b.envelope) {
+            if !enter(b) {
                 at = b.after as usize;
                 continue;
             }
-            let leaf = b.first as usize..(b.first + b.count) as usize;
-            if self.order[leaf].iter().any(|&k| holds(k as usize)) {
+            if (b.first..b.first + b.count).any(|k| holds(k as usize)) {
                 return true;
             }
             at += 1;
@@ -136,7 +143,8 @@ impl SegmentIndex {
 
     /// Asks `stop` about every segment that the ray from `p` towards +x may cross, until it holds.
     pub(crate) fn crossed_by_ray(&self, p: Point, mut stop: impl FnMut(Crossing, usize) -> bool) -> bool {
-        let meets = |b: &Bbox| b.min[1] <= p[1] && p[1] <= b.max[1] && p[0] <= b.max[0];
+        let meets =
+            |TreeBox { envelope: Bbox { min, max }, .. }: &TreeBox| min[1] <= p[1] && p[1] <= max[1] && p[0] <= max[0];
         self.any_in_boxes(meets, |k| {
             let [a, b] = self.segments[k];
             stop(ray_crossing(p, a, b), k)
@@ -146,12 +154,23 @@ impl SegmentIndex {
     /// Every pair of segments whose boxes meet within `margin`, each once and in order: candidates for meeting.
     pub fn close_pairs(&self, margin: f64) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
-        for (k, [a, b]) in self.segments.iter().enumerate() {
-            let own = Bbox::of([*a, *b]).grown([margin, margin]);
-            self.any_in(&own, |other| {
-                let [c, d] = self.segments[other];
-                if other > k && own.overlaps(&Bbox::of([c, d]), self.room) {
-                    pairs.push([k, other]);
+        let grown = |k: usize| Bbox::of(self.segments[k]).grown([margin; 2]);
+        for leaf in self.boxes.iter().filter(|b| b.count > 0) {
+            let window = leaf.envelope.grown([margin; 2]);
+            let own: [Bbox; LEAF] =
+                std::array::from_fn(
+                    |i| if i < leaf.count as usize { grown(leaf.first as usize + i) } else { Bbox::EMPTY },
+                );
+            // Each pair from the leaf of its first segment.
+            let enter =
+                |b: &TreeBox| (b.count == 0 || b.first >= leaf.first) && b.envelope.overlaps(&window, self.room);
+            self.any_in_boxes(enter, |other| {
+                let box_of_other = Bbox::of(self.segments[other]);
+                for (i, own) in own.iter().enumerate() {
+                    let k = leaf.first as usize + i;
+                    if k < other && own.overlaps(&box_of_other, self.room) {
+                        pairs.push([k, other]);
+                    }
                 }
                 false
             });
@@ -161,25 +180,29 @@ impl SegmentIndex {
     }
 }
 
-/// Builds the boxes of `order`, whose first element is number `first` of the whole; halves along the longer extent of the
-/// middles, ties by number, so that the tree is balanced whatever the segments.
-fn split(segments: &[[Point; 2]], middles: &[Point], order: &mut [u32], first: usize, boxes: &mut Vec<TreeBox>) {
-    let envelope = Bbox::of(order.iter().flat_map(|&k| segments[k as usize]));
+/// Adds the boxes of the tree over `leaves`, halved along the longer extent of their middles, ties by number: the tree is
+/// balanced whatever the segments.
+fn split(leaves: &mut [TreeBox], boxes: &mut Vec<TreeBox>) {
     let here = boxes.len();
-    let count = if order.len() <= LEAF { order.len() as u32 } else { 0 };
-    boxes.push(TreeBox { envelope, after: 0, first: first as u32, count });
-    if count == 0 {
-        let spread = Bbox::of(order.iter().map(|&k| middles[k as usize]));
-        let d = usize::from(spread.height() > spread.width());
-        // Whole leaves on the left.
-        let half = (order.len() / 2).next_multiple_of(LEAF).min(order.len() - 1);
-        order.select_nth_unstable_by(half, |&i, &j| {
-            middles[i as usize][d].total_cmp(&middles[j as usize][d]).then(i.cmp(&j))
-        });
-        let (left, right) = order.split_at_mut(half);
-        split(segments, middles, left, first, boxes);
-        split(segments, middles, right, first + half, boxes);
+    if let [leaf] = leaves {
+        boxes.push(TreeBox { after: here as u32 + 1, ..*leaf });
+        return;
     }
+    let twice_middle = |leaf: &TreeBox, d: usize| leaf.envelope.min[d] + leaf.envelope.max[d];
+    let (mut envelope, mut spread) = (Bbox::EMPTY, Bbox::EMPTY);
+    for leaf in leaves.iter() {
+        envelope = envelope.union(leaf.envelope);
+        spread.include([twice_middle(leaf, 0), twice_middle(leaf, 1)]);
+    }
+    boxes.push(TreeBox { envelope, after: 0, first: 0, count: 0 });
+    let d = usize::from(spread.height() > spread.width());
+    let half = leaves.len() / 2;
+    leaves.select_nth_unstable_by(half, |a, b| {
+        twice_middle(a, d).total_cmp(&twice_middle(b, d)).then(a.first.cmp(&b.first))
+    });
+    let (left, right) = leaves.split_at_mut(half);
+    split(left, boxes);
+    split(right, boxes);
     boxes[here].after = boxes.len() as u32;
 }
 

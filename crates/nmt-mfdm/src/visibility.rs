@@ -3,7 +3,7 @@
 use nmt_cloud::Cloud;
 use nmt_geom::point::{cross, distance, dot, lerp, sub};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_geom::{Location, Locator, LoopId, NodeId, Point, RealBoundary, SegmentIndex, segment};
+use nmt_geom::{Bbox, Location, LoopId, NodeId, Point, RealBoundary, SegmentIndex, segment};
 
 /// A pair of nodes is hidden where the middle between them is outside by more than this fraction of max(h_x, h_y).
 const OUTSIDE_FRACTION: f64 = 0.25;
@@ -23,7 +23,6 @@ const ALONG_SINE: f64 = 1.0e-6;
 #[derive(Clone, Debug)]
 pub struct Visibility {
     segments: SegmentIndex,
-    locator: Locator,
     n_boundary: usize,
     margin: f64,              // user's length unit
     outside: f64,             // user's length unit
@@ -36,8 +35,7 @@ impl Visibility {
     pub fn new(cloud: &Cloud) -> Self {
         let boundary = cloud.boundary();
         Self {
-            segments: boundary.segment_index(),
-            locator: boundary.locator(),
+            segments: boundary.index().clone(),
             n_boundary: cloud.n_boundary(),
             margin: SAME_POINT_REL * cloud.size(),
             outside: OUTSIDE_FRACTION * cloud.max_spacing(),
@@ -72,16 +70,15 @@ impl Visibility {
     fn blocked(&self, p: Point, q: Point) -> bool {
         let direction = sub(q, p);
         let back = [-direction[0], -direction[1]];
-        let mut blocked = false;
-        self.segments.candidates(p, q, self.margin, |k| {
+        self.segments.any_in(&Bbox::of([p, q]).grown([self.margin; 2]), |k| {
             let [a, b] = self.segments.segment(k);
-            blocked = blocked || segment::cross_properly(p, q, a, b, self.margin);
-            if !blocked && self.is_between(a, p, q) {
-                let [to_next, to_last] = self.corners[k];
-                blocked = leaves_material(direction, to_next, to_last) || leaves_material(back, to_next, to_last);
+            if segment::cross_properly(p, q, a, b, self.margin) {
+                return true;
             }
-        });
-        blocked
+            let [to_next, to_last] = self.corners[k];
+            self.is_between(a, p, q)
+                && (leaves_material(direction, to_next, to_last) || leaves_material(back, to_next, to_last))
+        })
     }
 
     /// True where `node` lies on the segment `p q`, away from its ends.
@@ -96,7 +93,7 @@ impl Visibility {
     fn outside_between(&self, xy: &[Point], centre: NodeId, other: NodeId) -> bool {
         let (p, q) = (xy[centre.index()], xy[other.index()]);
         let middle = lerp(p, q, 0.5);
-        if self.locator.locate(middle) != Location::Outside {
+        if self.segments.locate(middle) != Location::Outside {
             return false;
         }
         let (a, b) = (self.places[centre.index()], self.places[other.index()]);

@@ -80,10 +80,7 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
     let mut parts = Vec::with_capacity(problem.subdomains.len());
     let mut faults = Vec::new();
     for (k, subdomain) in problem.subdomains.iter().enumerate() {
-        let section = Section {
-            contour: subdomain.contour.clone(),
-            holes: subdomain.holes.iter().map(|hole| hole.outline.clone()).collect(),
-        };
+        let section = section(subdomain);
         match generate(&section, &cloud_params(problem, subdomain)) {
             Ok(cloud) => parts.push(CloudPart {
                 name: subdomain.name.clone(),
@@ -100,7 +97,16 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
     if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
 }
 
-fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
+/// The outlines of a subdomain, as its cloud is made from them.
+pub fn section(subdomain: &Subdomain) -> Section {
+    Section {
+        contour: subdomain.contour.clone(),
+        holes: subdomain.holes.iter().map(|hole| hole.outline.clone()).collect(),
+    }
+}
+
+/// Density, irregularity and clearances of a subdomain, as its cloud is made with them.
+pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
     CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),

@@ -124,7 +124,7 @@ const CASES: &[Case] = &[
     case("a shear modulus of 0", &[("shear_modulus = 1.0", "shear_modulus = 0")]),
     case("an infinite shear modulus", &[("shear_modulus = 1.0", "shear_modulus = inf")]),
     case("a shear modulus of a wrong kind", &[("shear_modulus = 1.0", "shear_modulus = \"steel\"")]),
-    case("clearances out of range", &[("irregularity = 0.25", "edge_clearance = 0\nnode_clearance = 1.5")]),
+    case("clearances out of range", &[("irregularity = 0.25", "edge_clearance = -0.1\nnode_clearance = 2.5")]),
     case("an unknown formulation of a subdomain", &[("irregularity = 0.25", "formulation = \"fem\"")]),
     // Shapes.
     case("no shape", &[(RECTANGLE, "")]),

@@ -4,5 +4,7 @@ mod clearance;
 mod edges;
 mod errors;
 mod numbering;
+mod random_regions;
+mod randomising;
 mod sections;
 mod units;

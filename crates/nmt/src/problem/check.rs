@@ -6,7 +6,7 @@ use super::read::{Draft, SubdomainDraft};
 use super::shape::{self, Shape};
 use nmt_geom::point::{cross, distance, sub};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_geom::{Bbox, Point, Region, RegionFault, overlap};
+use nmt_geom::{Bbox, IndexedRegion, Point, Region, RegionFault, overlap};
 
 /// Curves are checked as polygons that leave them by at most this fraction of the size.
 ///
@@ -260,24 +260,22 @@ fn is_sound(shape: &Shape, size: f64, faults: &mut Faults) -> bool {
 /// Notes the pairs of sound subdomains with common points inside both; in the order of the file.
 fn overlaps(subdomains: &[SubdomainDraft], regions: &[Option<Region>], size: f64, faults: &mut Faults) {
     // Swept from left to right, so that thousands of subdomains side by side are compared with their neighbours only.
-    let mut order: Vec<_> = regions.iter().enumerate().filter_map(|(k, region)| Some((k, region.as_ref()?))).collect();
+    let indexed = |(k, region): (usize, &Option<Region>)| Some((k, IndexedRegion::new(region.as_ref()?)));
+    let mut order: Vec<_> = regions.iter().enumerate().filter_map(indexed).collect();
     order.sort_by(|(_, a), (_, b)| a.envelope().min[0].total_cmp(&b.envelope().min[0]));
-    let mut open: Vec<(usize, &Region, Bbox)> = Vec::new();
-    for (k, region) in order {
-        let envelope = region.envelope();
-        open.retain(|(_, _, other)| other.max[0] >= envelope.min[0]);
-        for (other, other_region, other_envelope) in &open {
-            if !other_envelope.overlaps(&envelope, 0.0) {
-                continue;
-            }
+    let mut open: Vec<&(usize, IndexedRegion)> = Vec::new();
+    for this in &order {
+        let (k, region) = this;
+        open.retain(|(_, other)| other.envelope().max[0] >= region.envelope().min[0]);
+        for (other, other_region) in open.iter().copied() {
             let Some(at) = overlap(other_region, region, TOUCH_REL * size) else { continue };
-            let (first, second) = (k.min(*other), k.max(*other));
+            let (first, second) = (*k.min(other), *k.max(other));
             let Some(shape) = &subdomains[second].contour else { continue };
             let message = format!("it overlaps {}, for example at {}", subdomains[first].item, point(at, size));
             let remedy = "let them share edges only; one that lies within another needs a hole of its shape there";
             faults.push(shape.place.clone(), shape.item.as_str(), message, remedy);
         }
-        open.push((k, region, envelope));
+        open.push(this);
     }
 }
 

@@ -22,9 +22,8 @@ const ORDERS: [usize; 1] = [2];
 
 /// Least and most spacings of clearance.
 ///
-/// Nearer nodes make slivers whose stars cannot carry a polynomial; a clearance of more than a spacing leaves a strip
-/// along the boundary without nodes.
-const CLEARANCE: [f64; 2] = [0.01, 1.0];
+/// Without clearance a cloud has every grid point strictly inside; beyond two spacings it has no use.
+const CLEARANCE: [f64; 2] = [0.0, 2.0];
 
 /// Why a value is refused, and what to give instead.
 #[derive(Debug, PartialEq)]

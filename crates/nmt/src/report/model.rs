@@ -4,7 +4,7 @@ use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
 use crate::problem::Problem;
 use crate::report::singular::singular_vertices;
 use crate::report::warnings;
-use nmt_cloud::{Census, Cloud, Section};
+use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::Point;
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_mfdm::{StarReport, Stress};
@@ -51,6 +51,11 @@ pub struct SubdomainReport {
     pub spacing: [f64; 2],
     /// Grid points by fate.
     pub census: CensusReport,
+    /// Edges divided by chords.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub divisions: Vec<DivisionReport>,
+    /// How evenly the nodes are spread.
+    pub cloud_quality: Option<CloudQualityReport>,
     /// Shape of the triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<QualityReport>,
@@ -76,6 +81,32 @@ pub struct CensusReport {
     pub near_node: usize,
     /// Interior nodes.
     pub kept: usize,
+}
+
+/// An edge divided by chords.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DivisionReport {
+    /// The edge's name.
+    pub edge: String,
+    /// Length of the equal chords.
+    pub chord: f64,
+    /// Nodes that no longer fitted.
+    pub left_out: usize,
+    /// By how much the last chord misses the length of the others.
+    pub closing_error: f64,
+}
+
+/// How evenly nodes are spread; see [`nmt_cloud::CloudQuality`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CloudQualityReport {
+    /// Half the least distance between two nodes.
+    pub separation: f64,
+    /// Radius of the largest circle without a node whose centre is in the section.
+    pub fill_distance: f64,
+    /// Fill distance over separation.
+    pub ratio: f64,
+    /// Coefficient of variation of the nearest-node distance.
+    pub nearest_variation: f64,
 }
 
 /// Shape of the triangles.
@@ -211,7 +242,7 @@ pub struct Totals {
 impl Report {
     /// The report of clouds.
     pub fn of_clouds(problem: &Problem, parts: &[CloudPart]) -> Self {
-        let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.cloud)).collect();
+        let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.edge_names, &part.cloud)).collect();
         let mut report = Self::new(problem, subdomains);
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, &part.cloud)));
         report
@@ -276,7 +307,19 @@ impl Report {
     }
 }
 
-fn cloud_report(name: &str, cloud: &Cloud) -> SubdomainReport {
+fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainReport {
+    let division = |closing: &Closing| DivisionReport {
+        edge: edge_names.get(closing.edge.index()).cloned().unwrap_or_default(),
+        chord: closing.chord,
+        left_out: closing.left_out,
+        closing_error: closing.closing_error,
+    };
+    let spread = |q: CloudQuality| CloudQualityReport {
+        separation: q.separation,
+        fill_distance: q.fill_distance,
+        ratio: q.ratio,
+        nearest_variation: q.nearest_variation,
+    };
     let Census { grid, outside, in_hole, near_edge, near_node, kept } = cloud.census();
     SubdomainReport {
         name: name.into(),
@@ -287,6 +330,8 @@ fn cloud_report(name: &str, cloud: &Cloud) -> SubdomainReport {
         centroid: cloud.boundary().centroid(),
         spacing: cloud.spacing(),
         census: CensusReport { grid, outside, in_hole, near_edge, near_node, kept },
+        divisions: cloud.closings().iter().map(division).collect(),
+        cloud_quality: nmt_cloud::quality(cloud).map(spread),
         quality: None,
         solution: None,
         seconds: Seconds::default(),
@@ -302,7 +347,7 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
         centroid: mesh.centroid(),
         quality: quality(mesh).map(of_quality),
         seconds: Seconds { mesh: Some(0.0), ..Seconds::default() },
-        ..cloud_report(&part.name, mesh.cloud())
+        ..cloud_report(&part.name, &part.edge_names, mesh.cloud())
     }
 }
 

@@ -64,6 +64,30 @@ impl<U: Fn(i32) -> String> Text<U> {
                 census.grid, census.outside, census.in_hole, census.near_edge, census.near_node, census.kept
             ),
         );
+        for division in &s.divisions {
+            self.row(
+                &format!("edge \"{}\"", division.edge),
+                format!(
+                    "in chords of {}{u1}: {} left out, closing error {} ({:.1} %)",
+                    number(division.chord),
+                    counted(division.left_out, "node", "nodes"),
+                    number(division.closing_error),
+                    100.0 * division.closing_error / division.chord
+                ),
+            );
+        }
+        if let Some(q) = &s.cloud_quality {
+            self.row(
+                "spread of nodes",
+                format!(
+                    "separation {}, fill distance {}, ratio {:.2}, nearest-node distance varies by {:.1} %",
+                    number(q.separation),
+                    number(q.fill_distance),
+                    q.ratio,
+                    100.0 * q.nearest_variation
+                ),
+            );
+        }
         if let Some(triangles) = s.triangles {
             self.row("triangles", triangles);
         }
@@ -121,6 +145,11 @@ impl<U: Fn(i32) -> String> Text<U> {
         }
         self.out.push('\n');
     }
+}
+
+/// A count with its noun.
+pub(super) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
 }
 
 /// A point as text, each coordinate with seven significant digits.

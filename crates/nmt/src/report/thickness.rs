@@ -34,7 +34,7 @@ pub struct ThinSpot {
 /// to the wall it faces; `None` where there is none.
 pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
     let boundary = cloud.boundary();
-    let index = boundary.segment_index();
+    let index = boundary.index();
     let [h_x, h_y] = cloud.spacing();
     let ends: Vec<[Point; 2]> = boundary.all_ends().collect();
     let lengths: Vec<f64> = ends.iter().map(|[a, b]| distance(*a, *b)).collect();

@@ -3,7 +3,7 @@
 use crate::pipeline::SolvedPart;
 use crate::report::model::PointReport;
 use crate::report::singular::singular_vertices;
-use crate::report::text::place;
+use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
@@ -83,10 +83,6 @@ pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
         ));
     }
     warnings
-}
-
-fn counted(n: usize, one: &str, many: &str) -> String {
-    format!("{n} {}", if n == 1 { one } else { many })
 }
 
 /// The paper solves each subdomain alone.
