@@ -17,10 +17,18 @@ pub(crate) struct Triangles {
 
 /// Triangulates the convex hull of all nodes with the segments of the real boundary as constraints.
 pub(crate) fn constrained(cloud: &Cloud) -> Result<Triangles, MeshError> {
+    triangulate(cloud, cloud.boundary().segments().iter().map(|s| [s.from.index(), s.to.index()]).collect())
+}
+
+/// Triangulates the convex hull of all nodes, whatever the real boundary; the paper's `delaunay`.
+pub(crate) fn plain(cloud: &Cloud) -> Result<Triangles, MeshError> {
+    triangulate(cloud, Vec::new())
+}
+
+fn triangulate(cloud: &Cloud, constraints: Vec<[usize; 2]>) -> Result<Triangles, MeshError> {
     let scale = power_of_two_near(cloud.size());
     let points: Vec<Point2<f64>> =
         cloud.xy().iter().map(|p| Point2::new(fit(p[0] * scale), fit(p[1] * scale))).collect();
-    let constraints = cloud.boundary().segments().iter().map(|s| [s.from.index(), s.to.index()]).collect();
     let mut conflicts = Vec::new();
     let cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(points, constraints, |segment| {
         conflicts.push(segment);

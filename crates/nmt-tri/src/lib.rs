@@ -1,8 +1,9 @@
 //! Triangular meshes of exactly the nodes of a given cloud: none added, none lost.
 //!
-//! The triangulation is Delaunay with the real boundary as constraints, cut to the material. Ties (four nodes on one
+//! The default is Delaunay with the real boundary as constraints, cut to the material. Ties (four nodes on one
 //! circle, which is every cell of a regular cloud) are settled by node numbers, so that a section in millimetres and in
-//! kilometres has the same triangles.
+//! kilometres has the same triangles. The paper's own way, Delaunay without the boundary, elimination and completion, is
+//! [`Mesh::unconstrained`].
 //!
 //! ```
 //! use nmt_cloud::{CloudParams, Section, generate};
@@ -19,15 +20,19 @@
 
 mod adjacency;
 mod carve;
+mod complete;
 mod delaunay;
+mod eliminate;
 mod error;
 mod locate;
 mod mesh;
 mod quality;
 mod ties;
+mod unconstrained;
 
 pub use adjacency::{MeshEdge, NodeTris, edges};
 pub use error::MeshError;
 pub use locate::{TriangleIndex, barycentric};
 pub use mesh::Mesh;
 pub use quality::{Quality, quality, shape};
+pub use unconstrained::{Elimination, MeshCensus, Stages, stages};

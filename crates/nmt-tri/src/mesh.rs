@@ -5,6 +5,7 @@ use crate::carve::carve;
 use crate::delaunay::constrained;
 use crate::error::MeshError;
 use crate::ties::settle;
+use crate::unconstrained::{Elimination, MeshCensus, Stages, stages};
 use nmt_cloud::Cloud;
 use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
@@ -49,6 +50,32 @@ impl Mesh {
             triangles.nodes.iter().map(|nodes| smallest_first(*nodes).map(NodeId)).collect();
         tri_nodes.sort_unstable();
         Ok(Self { cloud, tri_nodes })
+    }
+
+    /// The paper's own way (Sec. 5): Delaunay of all nodes, elimination of what does not belong, completion of what is
+    /// missing; with the triangles by step.
+    ///
+    /// Steps that `elimination` switches off are left out, and the result may then be no sound mesh: see [`Self::check`].
+    ///
+    /// # Errors
+    /// [`MeshError`] where two nodes coincide, or a segment of the real boundary stays bare although completion is asked
+    /// for.
+    ///
+    /// ```
+    /// use nmt_cloud::{CloudParams, Section, generate};
+    /// use nmt_curve::Outline;
+    /// use nmt_tri::{Elimination, Mesh};
+    ///
+    /// let l = Section::solid(Outline::polygon([[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]]));
+    /// let cloud = generate(&l, &CloudParams { nodes: [9, 9], ..CloudParams::default() })?;
+    /// let (mesh, census) = Mesh::unconstrained(cloud, &Elimination::default())?;
+    /// assert_eq!(mesh.check(), Ok(()));
+    /// assert!(census.outside > 0 && census.completed == 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn unconstrained(cloud: Cloud, elimination: &Elimination) -> Result<(Self, MeshCensus), MeshError> {
+        let Stages { completed, census, .. } = stages(&cloud, elimination)?;
+        Ok((Self { cloud, tri_nodes: completed }, census))
     }
 
     /// The cloud it stands on.
@@ -149,7 +176,7 @@ impl Mesh {
     }
 }
 
-fn smallest_first(nodes: [u32; 3]) -> [u32; 3] {
+pub(crate) fn smallest_first(nodes: [u32; 3]) -> [u32; 3] {
     let [a, b, c] = nodes;
     if a < b && a < c {
         [a, b, c]

@@ -6,3 +6,4 @@ mod faults;
 mod invariants;
 mod locate;
 mod sections;
+mod unconstrained;

@@ -1,0 +1,133 @@
+//! The paper's own way: Delaunay of all nodes, elimination, completion.
+
+use crate::sections::{any_density, any_shape, params};
+use nmt_cloud::{Cloud, CloudParams, Section, generate};
+use nmt_curve::Outline;
+use nmt_tri::{Elimination, Mesh, MeshCensus, MeshError, edges, stages};
+use proptest::prelude::*;
+
+fn cloud(section: &Section, params: &CloudParams) -> Cloud {
+    generate(section, params).expect("a sound section with room for interior nodes")
+}
+
+fn checked(cloud: Cloud) -> (Mesh, MeshCensus) {
+    let (mesh, census) = Mesh::unconstrained(cloud, &Elimination::default()).expect("every gap is filled");
+    assert_eq!(mesh.check(), Ok(()));
+    let MeshCensus { delaunay, outside, in_hole, tiny, crossing, completed } = census;
+    assert_eq!(mesh.n_triangles(), delaunay - outside - in_hole - tiny - crossing + completed, "{census:?}");
+    (mesh, census)
+}
+
+/// A plate with a slot whose sides are seen across by nodes of the other side.
+fn narrow_slot() -> Section {
+    Section::solid(Outline::polygon([
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 1.0],
+        [0.5, 1.0],
+        [0.5, 1.06],
+        [3.7, 1.1],
+        [3.7, 2.0],
+        [0.0, 2.0],
+    ]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn every_region_is_filled(
+        shape in any_shape(), nodes in any_density(), irregularity in prop_oneof![Just(0.0), 0.01..0.49f64],
+    ) {
+        checked(cloud(&shape.section(1.0), &params(nodes, irregularity)));
+    }
+
+    #[test]
+    fn where_nothing_is_missing_it_is_the_constrained_triangulation(
+        shape in any_shape(), nodes in any_density(), irregularity in prop_oneof![Just(0.0), 0.01..0.49f64],
+    ) {
+        let cloud = cloud(&shape.section(1.0), &params(nodes, irregularity));
+        let (mesh, census) = checked(cloud.clone());
+        if census.completed == 0 {
+            prop_assert_eq!(mesh, Mesh::constrained(cloud).expect("a sound cloud"));
+        }
+    }
+}
+
+#[test]
+fn narrow_slots_at_coarse_density_are_completed() {
+    let mut completed = 0;
+    for nodes in [[9, 9], [9, 5], [7, 12], [17, 9], [33, 17]] {
+        for (irregularity, seed) in [(0.0, 0), (0.2, 1), (0.2, 2), (0.45, 3), (0.45, 4)] {
+            let params = CloudParams { seed, ..params(nodes, irregularity) };
+            completed += checked(cloud(&narrow_slot(), &params)).1.completed;
+        }
+    }
+    assert!(completed > 0, "the slot's sides are edges of the Delaunay triangulation after all");
+}
+
+#[test]
+fn slits_of_a_millionth_are_completed() {
+    for nodes in [[9, 9], [21, 11], [41, 41]] {
+        for irregularity in [0.0, 0.3] {
+            let section = crate::sections::Shape::Slotted { width: 1e-6 }.section(1.0);
+            checked(cloud(&section, &params(nodes, irregularity)));
+        }
+    }
+}
+
+#[test]
+fn each_step_can_be_left_out_and_tells_its_count() {
+    let section = Section {
+        contour: Outline::polygon([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]),
+        holes: vec![Outline::circle([0.5, 0.5], 0.2)],
+    };
+    let cloud = cloud(&section, &params([17, 17], 0.2));
+    let all = stages(&cloud, &Elimination::default()).expect("a sound cloud").census;
+    assert!(all.outside > 0 && all.in_hole > 0);
+    let none = Elimination { outside: false, in_hole: false, tiny: false, complete: false };
+    let left = stages(&cloud, &none).expect("a sound cloud");
+    assert_eq!(left.delaunay, left.completed);
+    assert_eq!(left.census, MeshCensus { delaunay: all.delaunay, ..MeshCensus::default() });
+    let (mesh, census) = Mesh::unconstrained(cloud.clone(), &Elimination { in_hole: false, ..Elimination::default() })
+        .expect("triangles in the hole hinder nothing");
+    assert_eq!((census.in_hole, census.outside), (0, all.outside));
+    assert!(mesh.check().is_err(), "the hole is filled with triangles");
+    let outside_alone = Elimination { outside: true, ..none };
+    assert_eq!(stages(&cloud, &outside_alone).expect("a sound cloud").census.outside, all.outside);
+}
+
+#[test]
+fn a_micrometre_section_keeps_its_triangles() {
+    // The paper's bound on areas, 1e-12 in any unit, would delete every triangle of 1e-7 × 1e-7.
+    for unit in [1e-6, 1.0, 1e6] {
+        let section = crate::sections::Shape::Perforated.section(unit);
+        let (mesh, census) = checked(cloud(&section, &params([21, 11], 0.2)));
+        assert!(census.tiny < 20 && mesh.n_triangles() > 200, "{census:?}");
+    }
+}
+
+#[test]
+fn what_completion_does_not_touch_is_left_as_it_was() {
+    let cloud = cloud(&narrow_slot(), &params([9, 9], 0.0));
+    let stages = stages(&cloud, &Elimination::default()).expect("every gap is filled");
+    let added = stages.completed.iter().filter(|t| !stages.eliminated.contains(t)).count();
+    assert!(stages.census.completed > 0 && added <= stages.census.completed + 2);
+    let bare = |triangles: &[[nmt_geom::NodeId; 3]]| {
+        let edges: Vec<[u32; 2]> = edges(triangles).iter().map(|edge| edge.nodes).collect();
+        let segments = cloud.boundary().segments();
+        segments.iter().filter(|s| !edges.contains(&[s.from.0.min(s.to.0), s.from.0.max(s.to.0)])).count()
+    };
+    assert!(bare(&stages.eliminated) > 0);
+    assert_eq!(bare(&stages.completed), 0);
+}
+
+#[test]
+fn nodes_at_one_place_are_an_error() {
+    let sound = cloud(&narrow_slot(), &params([9, 9], 0.0));
+    let mut interior = sound.xy()[sound.n_boundary()..].to_vec();
+    interior.push(interior[0]);
+    let cloud = Cloud::from_parts(sound.boundary().clone(), 8, interior, [0.5, 0.25], sound.census());
+    let error = Mesh::unconstrained(cloud, &Elimination::default()).map(|_| ());
+    assert!(matches!(error, Err(MeshError::SameNode { .. })), "{error:?}");
+}
