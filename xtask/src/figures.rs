@@ -1,24 +1,43 @@
 //! Pictures of the documentation, from the shipped problems.
 
+use crate::golden::read_problem;
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::solution_svg;
+use nmt::figures::{solution_svg, stages_svg};
+use nmt::pipeline::clouds;
 use nmt::prelude::*;
 use std::fs;
 
 /// The problems whose four panels the documentation shows.
 const SHOWN: [&str; 1] = ["paper-3"];
 
+/// The problem whose mesh the documentation shows in its four stages.
+const STAGES: &str = "bare-segment";
+
 /// Redraws docs/figures.
 pub fn draw() -> Result<()> {
     for name in SHOWN {
-        let file = root().join(format!("fixtures/problems/{name}.toml"));
-        let text = fs::read_to_string(&file).with_context(|| format!("{} cannot be read", file.display()))?;
-        let problem = Problem::parse(name, &text, &Overrides::default()).map_err(nmt::NmtError::Problem)?;
-        let picture = nmt::plot::png(&solution_svg(&problem, &solve_problem(&problem)?))?;
-        let target = root().join(format!("docs/figures/{name}.png"));
-        fs::write(&target, picture).with_context(|| format!("{} cannot be written", target.display()))?;
-        println!("{name}.png");
+        let problem = shipped(name)?;
+        write(name, &solution_svg(&problem, &solve_problem(&problem)?))?;
     }
+    let problem = shipped(STAGES)?;
+    for part in clouds(&problem, &mut |_, _| {})? {
+        let stages = nmt_tri::stages(&part.cloud, &nmt_tri::Elimination::default())?;
+        for (picture, letter) in stages_svg(&problem.units, &part.name, &part.cloud, &stages).iter().zip('a'..) {
+            write(&format!("{STAGES}-{letter}"), picture)?;
+        }
+    }
+    Ok(())
+}
+
+fn shipped(name: &str) -> Result<Problem> {
+    read_problem(&root().join(format!("fixtures/problems/{name}.toml")), &Overrides::default())
+}
+
+/// Writes a picture as PNG.
+fn write(name: &str, svg: &str) -> Result<()> {
+    let target = root().join(format!("docs/figures/{name}.png"));
+    fs::write(&target, nmt::plot::png(svg)?).with_context(|| format!("{} cannot be written", target.display()))?;
+    println!("{name}.png");
     Ok(())
 }

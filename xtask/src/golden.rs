@@ -198,7 +198,7 @@ fn read_case(directory: PathBuf) -> Result<Case> {
 }
 
 /// A problem file as the command reads it.
-fn read_problem(file: &Path, overrides: &nmt::problem::Overrides) -> Result<nmt::problem::Problem> {
+pub fn read_problem(file: &Path, overrides: &nmt::problem::Overrides) -> Result<nmt::problem::Problem> {
     let text = fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))?;
     let problem = nmt::problem::Problem::parse(&file.display().to_string(), &text, overrides);
     Ok(problem.map_err(nmt::NmtError::Problem)?)

@@ -21,7 +21,7 @@ pub enum Command {
     /// Generate the cloud of nodes
     Nodes(CloudArgs),
     /// Generate the cloud and its triangular mesh
-    Mesh(CloudArgs),
+    Mesh(MeshArgs),
     /// Solve the Prandtl torsion problem
     Solve(SolveArgs),
 }
@@ -74,7 +74,7 @@ pub struct CheckArgs {
     pub keys: SolveKeys,
 }
 
-/// Options of `nmt nodes` and `nmt mesh`.
+/// Options of `nmt nodes`, and some of `nmt mesh`.
 #[derive(Debug, clap::Args)]
 pub struct CloudArgs {
     #[command(flatten)]
@@ -84,6 +84,26 @@ pub struct CloudArgs {
     pub out: Option<PathBuf>,
 }
 
+/// Keys of [mesh], each winning over the file's.
+#[derive(Debug, Default, clap::Args)]
+pub struct MeshKeys {
+    /// Triangulation: constrained, or the paper's unconstrained
+    #[arg(long)]
+    pub method: Option<String>,
+    /// Steps of the unconstrained way, of outside,in_hole,tiny,complete; or four flags such as 1,1,1,0; or none
+    #[arg(long, value_name = "STEPS", value_delimiter = ',')]
+    pub elim: Option<Vec<String>>,
+}
+
+/// Options of `nmt mesh`.
+#[derive(Debug, clap::Args)]
+pub struct MeshArgs {
+    #[command(flatten)]
+    pub cloud: CloudArgs,
+    #[command(flatten)]
+    pub mesh: MeshKeys,
+}
+
 /// Options of `nmt solve`.
 #[derive(Debug, clap::Args)]
 pub struct SolveArgs {
@@ -91,6 +111,8 @@ pub struct SolveArgs {
     pub problem: ProblemArgs,
     #[command(flatten)]
     pub keys: SolveKeys,
+    #[command(flatten)]
+    pub mesh: MeshKeys,
     /// Directory for the files (created if need be)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -105,8 +127,13 @@ impl ProblemArgs {
         Overrides { nodes: self.nodes, seed: self.seed, ..Overrides::default() }
     }
 
+    /// What the options change of the file, without keys of [solve].
+    pub fn overrides_with_mesh(&self, mesh: &MeshKeys) -> Overrides {
+        Overrides { method: mesh.method.clone(), elim: mesh.elim.clone(), ..self.overrides() }
+    }
+
     /// What the options change of the file.
-    pub fn overrides_with(&self, keys: &SolveKeys) -> Overrides {
+    pub fn overrides_with(&self, keys: &SolveKeys, mesh: &MeshKeys) -> Overrides {
         Overrides {
             formulation: keys.formulation.clone(),
             twist: keys.twist,
@@ -114,7 +141,7 @@ impl ProblemArgs {
             holes: keys.holes.clone(),
             order: keys.order,
             star: keys.star,
-            ..self.overrides()
+            ..self.overrides_with_mesh(mesh)
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::plot::{Caption, Fields, NodeMark, Part, mesh_figure, nodes_figure, so
 use crate::problem::Problem;
 use nmt_cloud::{Cloud, NodeKind};
 use nmt_geom::{LoopId, NodeId};
-use nmt_tri::Mesh;
+use nmt_tri::{Mesh, Stages};
 
 /// What a picture needs of one cloud or mesh, in the plain form that [`crate::plot`] takes.
 struct Drawn<'a> {
@@ -64,6 +64,24 @@ pub fn nodes_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str
 pub fn mesh_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str, &'a Mesh)>) -> String {
     let drawn: Vec<Drawn> = parts.into_iter().map(|(name, mesh)| Drawn::of_mesh(name, mesh)).collect();
     mesh_figure(&caption(problem), &drawn.iter().map(Drawn::part).collect::<Vec<_>>())
+}
+
+/// The paper's way to a mesh in four pictures, as in its Fig. 11: the cloud, its Delaunay triangles, what elimination leaves,
+/// and the completed mesh.
+pub fn stages_svg(units: &str, name: &str, cloud: &Cloud, stages: &Stages) -> [String; 4] {
+    let picture = |title: &str, triangles: Option<&[[NodeId; 3]]>| {
+        let mut drawn = Drawn::of_cloud(name, cloud);
+        let caption = Caption { title, units };
+        let Some(triangles) = triangles else { return nodes_figure(&caption, &[drawn.part()]) };
+        drawn.triangles = triangles.iter().map(|nodes| nodes.map(|node| node.0)).collect();
+        mesh_figure(&caption, &[drawn.part()])
+    };
+    [
+        picture("a) Cloud of nodes", None),
+        picture("b) Delaunay triangles of all nodes", Some(&stages.delaunay)),
+        picture("c) After elimination", Some(&stages.eliminated)),
+        picture("d) After completion", Some(&stages.completed)),
+    ]
 }
 
 /// solution.svg: F, τ_zx, τ_zy and τ.

@@ -4,10 +4,10 @@
 //! them all.
 
 use crate::error::NmtError;
-use crate::problem::{Problem, Subdomain};
+use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
-use nmt_tri::Mesh;
+use nmt_tri::{Mesh, MeshCensus};
 
 /// A stage of the pipeline; an observer is told when one ends, so that whoever calls holds the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +57,10 @@ pub struct MeshPart {
     pub section: Section,
     /// Its triangles, and through them its cloud.
     pub mesh: Mesh,
+    /// How it was triangulated.
+    pub method: MeshMethod,
+    /// Triangles by what became of them; the constrained way has none to drop or add.
+    pub census: MeshCensus,
 }
 
 /// One subdomain solved.
@@ -158,12 +162,20 @@ fn star_fault(problem: &Problem, part: &CloudPart) -> Option<crate::problem::Pro
 ///
 /// # Errors
 /// [`NmtError::Mesh`] where a cloud cannot be triangulated.
-pub fn meshes(clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<MeshPart>, NmtError> {
+pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<MeshPart>, NmtError> {
+    let MeshSettings { method, elimination, .. } = &problem.mesh;
     let mesh = |(k, part): (usize, CloudPart)| {
         let CloudPart { name, edge_names, hole_names, section, cloud } = part;
-        let mesh = Mesh::constrained(cloud).map_err(|source| NmtError::Mesh { subdomain: name.clone(), source })?;
+        let made = match method {
+            MeshMethod::Constrained => Mesh::constrained(cloud).map(|mesh| {
+                let census = MeshCensus { delaunay: mesh.n_triangles(), ..MeshCensus::default() };
+                (mesh, census)
+            }),
+            MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
+        };
+        let (mesh, census) = made.map_err(|source| NmtError::Mesh { subdomain: name.clone(), source })?;
         observer(k, Stage::Mesh);
-        Ok(MeshPart { name, edge_names, hole_names, section, mesh })
+        Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census })
     };
     clouds.into_iter().enumerate().map(mesh).collect()
 }
@@ -171,12 +183,16 @@ pub fn meshes(clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<Mes
 /// Solutions of all subdomains, each alone with F = 0 on its whole outline.
 ///
 /// # Errors
-/// [`NmtError::Solve`] where the numerics fail.
+/// [`NmtError::Solve`] where the numerics fail; [`NmtError::Problem`] where steps of elimination are left out and the mesh
+/// is not sound without them.
 pub fn solutions(
     problem: &Problem,
     meshes: Vec<MeshPart>,
     observer: &mut Observer,
 ) -> Result<Vec<SolvedPart>, NmtError> {
+    if let Some(fault) = meshes.iter().find_map(|part| elimination_fault(problem, part)) {
+        return Err(NmtError::Problem(vec![fault]));
+    }
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
         let formulation = subdomain.formulation.unwrap_or(problem.solve.formulation);
@@ -192,6 +208,15 @@ pub fn solutions(
         Ok(SolvedPart { part, formulation, order: problem.solve.order, solution })
     };
     meshes.into_iter().enumerate().map(solve).collect()
+}
+
+/// A mesh that is not sound since steps were left out.
+fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<crate::problem::ProblemError> {
+    let place = problem.mesh.elimination_place.as_ref().filter(|_| !problem.mesh.elimination.is_whole())?;
+    let error = part.mesh.check().err()?;
+    let message =
+        format!("without all steps of `elim` the mesh of subdomain \"{}\" cannot be solved on: {error}", part.name);
+    Some(problem.source.error(place, "[mesh]", message, "leave `elim` out"))
 }
 
 impl From<nmt_mfdm::Stage> for Stage {
@@ -212,6 +237,6 @@ impl From<nmt_mfdm::Stage> for Stage {
 pub fn solve_problem(problem: &Problem) -> Result<Vec<SolvedPart>, NmtError> {
     let observer: &mut Observer = &mut |_, _| {};
     let clouds = clouds(problem, observer)?;
-    let meshes = meshes(clouds, observer)?;
+    let meshes = meshes(problem, clouds, observer)?;
     solutions(problem, meshes, observer)
 }

@@ -20,7 +20,7 @@ mod syntax;
 mod tree;
 
 pub use error::{Place, ProblemError, Source};
-pub use schema::{Hole, Overrides, Problem, SolveSettings, Subdomain};
+pub use schema::{Hole, MeshMethod, MeshSettings, Overrides, Problem, SolveSettings, Subdomain};
 
 use error::Faults;
 use read::{Draft, HoleDraft, SubdomainDraft};
@@ -56,9 +56,9 @@ impl Problem {
 
 /// The problem of a draft without faults.
 fn complete(draft: Draft, source: Source) -> Option<Problem> {
-    let Draft { title, units, subdomains, solve } = draft;
+    let Draft { title, units, subdomains, mesh, solve } = draft;
     let subdomains = subdomains.into_iter().map(subdomain).collect::<Option<_>>()?;
-    Some(Problem { title, units, subdomains, solve, source })
+    Some(Problem { title, units, subdomains, mesh, solve, source })
 }
 
 fn subdomain(draft: SubdomainDraft) -> Option<Subdomain> {

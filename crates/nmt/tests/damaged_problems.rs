@@ -72,12 +72,16 @@ const CASES: &[Case] = &[
     case("two syntax errors on two lines", &[("\"m\"", "m"), ("= 1.0", "= 1.0.0")]),
     case("an unknown division", &[("irregularity = 0.25", "irregularity = 0.25\ndivision = \"chords\"")]),
     case("an unknown unit of clearances", &[("irregularity = 0.25", "irregularity = 0.25\nclearance = \"both\"")]),
+    case("an unknown way to a mesh", &[("[solve]", "[mesh]\nmethod = \"delaunay\"\n[solve]")]),
+    case("steps that do not exist", &[("[solve]", "[mesh]\nmethod = \"unconstrained\"\nelim = [\"outsid\"]\n[solve]")]),
+    case("elimination without need", &[("[solve]", "[mesh]\nelim = [1, 1, 1, 0]\n[solve]")]),
+    case("steps of the wrong kind", &[("[solve]", "[mesh]\nmethod = \"unconstrained\"\nelim = 1\n[solve]")]),
     // Keys.
     case("a misspelt key", &[("irregularity", "iregularity")]),
     case("a misspelt key of a shape", &[("radius", "raduis")]),
     case("a key of another table", &[("seed = 20170301", "irregularity = 0.25")]),
     case("a hole beside its subdomain", &[("[[subdomain.hole]]", "[[hole]]")]),
-    case("a table that does not exist", &[("[solve]", "[mesh]\nmethod = \"constrained\"\n[solve]")]),
+    case("a table that does not exist", &[("[solve]", "[meshes]\nmethod = \"constrained\"\n[solve]")]),
     case("a key that no table knows", &[("order = 2", "order = 2\ntrial = \"mwls\"")]),
     case("a key with a blank", &[("units", "\"my units\"")]),
     // Subdomains and names.

@@ -268,3 +268,21 @@ fn units_decide_nothing_at_the_ratios_of_spacings_where_stars_change() {
         }
     }
 }
+
+/// The shipped slot needs completion, and the paper's way ends with the triangles of the constrained one.
+#[test]
+fn the_slot_of_bare_segment_toml_is_completed() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/problems/bare-segment.toml");
+    let text = std::fs::read_to_string(file).expect("a shipped problem");
+    let meshed = |method: &str| {
+        let options = Overrides { method: Some(method.into()), ..Overrides::default() };
+        let problem = Problem::parse("bare-segment.toml", &text, &options).expect("a sound problem");
+        let clouds = nmt::pipeline::clouds(&problem, &mut |_, _| {}).expect("a cloud");
+        nmt::pipeline::meshes(&problem, clouds, &mut |_, _| {}).expect("a mesh").remove(0)
+    };
+    let (papers, constrained) = (meshed("unconstrained"), meshed("constrained"));
+    assert_eq!((papers.mesh.check(), constrained.mesh.check()), (Ok(()), Ok(())));
+    assert!(papers.census.completed >= 1 && papers.census.crossing >= 1, "{:?}", papers.census);
+    assert_eq!(papers.mesh.n_triangles(), constrained.mesh.n_triangles());
+    assert_eq!(constrained.census.completed, 0);
+}

@@ -1,7 +1,7 @@
 //! `nmt mesh`: the cloud and its triangles.
 
 use super::{finish, load};
-use crate::args::CloudArgs;
+use crate::args::MeshArgs;
 use crate::exit::Failure;
 use crate::files::OutDir;
 use crate::timing::Stopwatch;
@@ -11,19 +11,19 @@ use nmt::pipeline::{clouds, meshes};
 use nmt::report::Report;
 
 /// Runs the command.
-pub fn mesh(args: &CloudArgs) -> Result<(), Failure> {
+pub fn mesh(args: &MeshArgs) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
-    let problem = load(&args.problem, &args.problem.overrides())?;
+    let problem = load(&args.cloud.problem, &args.cloud.problem.overrides_with_mesh(&args.mesh))?;
     let mut lap = |k, stage| watch.lap(k, stage);
     let parts = clouds(&problem, &mut lap)
-        .and_then(|clouds| meshes(clouds, &mut lap))
+        .and_then(|clouds| meshes(&problem, clouds, &mut lap))
         .map_err(|e| Failure::of(e, &problem.source))?;
-    if let Some(out) = &args.out {
+    if let Some(out) = &args.cloud.out {
         let out = OutDir::create(out)?;
         out.write("nodes.csv", csv_of_clouds(parts.iter().map(|p| (&*p.name, &*p.edge_names, p.mesh.cloud()))))?;
         out.write("mesh.vtu", vtu_of_meshes(&parts))?;
         out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
         out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
     }
-    finish(Report::of_meshes(&problem, &parts), &watch, args.problem.json, args.out.as_deref())
+    finish(Report::of_meshes(&problem, &parts), &watch, args.cloud.problem.json, args.cloud.out.as_deref())
 }

@@ -13,10 +13,10 @@ use nmt::report::Report;
 /// Runs the command.
 pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
-    let problem = load(&args.problem, &args.problem.overrides_with(&args.keys))?;
+    let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
     let mut lap = |k, stage| watch.lap(k, stage);
     let parts = clouds(&problem, &mut lap)
-        .and_then(|clouds| meshes(clouds, &mut lap))
+        .and_then(|clouds| meshes(&problem, clouds, &mut lap))
         .and_then(|meshes| solutions(&problem, meshes, &mut lap))
         .map_err(|e| Failure::of(e, &problem.source))?;
     if let Some(out) = &args.out {

@@ -1,9 +1,11 @@
 //! The range of every value, for the file and the options of the command alike.
 
+use super::schema::MeshMethod;
 use super::suggest;
 use nmt_cloud::{BYTES_PER_GRID_POINT, ClearanceUnit, MAX_GRID_POINTS};
 use nmt_curve::Division;
 use nmt_mfdm::{Formulation, HoleCondition};
+use nmt_tri::Elimination;
 
 /// Lengths, moduli, twists and torques are at most this, whatever their unit.
 ///
@@ -193,6 +195,28 @@ pub(super) fn hole_condition(word: &str) -> Result<HoleCondition, Refusal> {
 /// The division of curved edges by its word.
 pub(super) fn division(word: &str) -> Result<Division, Refusal> {
     choice("division", word, &Division::ALL.map(|d| (d.name(), d)))
+}
+
+/// The way to triangulate by its word.
+pub(super) fn mesh_method(word: &str) -> Result<MeshMethod, Refusal> {
+    choice("method", word, &MeshMethod::ALL.map(|m| (m.name(), m)))
+}
+
+/// The steps of the unconstrained way: names of those to take, or a flag 1 or 0 for each of the four, as in the paper.
+pub(super) fn elimination(words: &[&str]) -> Result<Elimination, Refusal> {
+    let steps = Elimination::STEPS;
+    let of = |taken: [bool; 4]| {
+        let [outside, in_hole, tiny, complete] = taken;
+        Elimination { outside, in_hole, tiny, complete }
+    };
+    if words.len() == steps.len() && words.iter().all(|word| matches!(*word, "0" | "1")) {
+        return Ok(of(std::array::from_fn(|k| words[k] == "1")));
+    }
+    let mut taken = [false; 4];
+    for word in words {
+        taken[choice("step of elimination", word, &std::array::from_fn::<_, 4, _>(|k| (steps[k], k)))?] = true;
+    }
+    Ok(of(taken))
 }
 
 /// The unit of clearances by its word.

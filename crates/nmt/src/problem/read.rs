@@ -2,9 +2,9 @@
 
 use super::error::{Faults, Place};
 use super::limits::{self, Refusal, quote};
-use super::schema::{Overrides, SolveSettings};
+use super::schema::{MeshMethod, MeshSettings, Overrides, SolveSettings};
 use super::shape::{self, Shape};
-use super::tree::{HOLE_KEYS, Reader, SOLVE_KEYS, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
+use super::tree::{HOLE_KEYS, MESH_KEYS, Reader, SOLVE_KEYS, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::Division;
 use nmt_mfdm::{Formulation, Load};
@@ -18,6 +18,7 @@ pub(super) struct Draft {
     pub(super) title: String,
     pub(super) units: String,
     pub(super) subdomains: Vec<SubdomainDraft>,
+    pub(super) mesh: MeshSettings,
     pub(super) solve: SolveSettings,
 }
 
@@ -60,6 +61,8 @@ pub(super) fn read(tree: &DeTable<'_>, options: &Overrides, reader: &mut Reader<
         let value = top.get(key);
         value.and_then(|v| reader.text("", key, v, example, |text| limits::label(key, text))).unwrap_or_default()
     });
+    let mut mesh = mesh(reader, &top);
+    apply_to_mesh(options, &mut mesh, &mut reader.faults);
     let mut solve = solve(reader, &top);
     apply(options, &mut solve, &mut reader.faults);
     let mut subdomains = subdomains(reader, &top, options);
@@ -74,7 +77,7 @@ pub(super) fn read(tree: &DeTable<'_>, options: &Overrides, reader: &mut Reader<
     if options.formulation.is_some() {
         subdomains.iter_mut().for_each(|subdomain| subdomain.formulation = None);
     }
-    Draft { title, units, subdomains, solve }
+    Draft { title, units, subdomains, mesh, solve }
 }
 
 fn subdomains(reader: &mut Reader<'_>, top: &Table<'_, '_>, options: &Overrides) -> Vec<SubdomainDraft> {
@@ -244,6 +247,71 @@ fn distinct_edges<'s>(reader: &mut Reader<'_>, shapes: impl Iterator<Item = &'s 
                 seen.insert(&edge.name, item);
             }
         }
+    }
+}
+
+/// `[mesh]` of the file.
+fn mesh(reader: &mut Reader<'_>, top: &Table<'_, '_>) -> MeshSettings {
+    let mut settings = MeshSettings::default();
+    let Some(value) = top.get("mesh") else { return settings };
+    let item = "[mesh]";
+    let DeValue::Table(entries) = value.get_ref() else {
+        let remedy = "write [mesh] on a line of its own, with its keys below";
+        reader.wrong_kind_with::<()>("", "mesh", "a table", value, remedy);
+        return settings;
+    };
+    let table = Table { entries, place: value.span(), item: item.to_owned() };
+    reader.known_keys(&table, item, MESH_KEYS);
+    let method = table.get("method");
+    let method = method.and_then(|v| reader.text(item, "method", v, "\"constrained\"", limits::mesh_method));
+    settings.method = method.unwrap_or_default();
+    if let Some(value) = table.get("elim") {
+        let remedy = "write the names of the steps to take, elim = [\"outside\", \"in_hole\", \"tiny\", \"complete\"], \
+                      or a flag 1 or 0 for each";
+        let words: Option<Vec<String>> = match value.get_ref() {
+            DeValue::Array(steps) => steps.iter().map(|step| step_word(step.get_ref())).collect(),
+            _ => None,
+        };
+        match words {
+            None => reader.wrong_kind_with(item, "elim", "an array of steps", value, remedy).unwrap_or_default(),
+            Some(words) => {
+                let words: Vec<&str> = words.iter().map(String::as_str).collect();
+                match limits::elimination(&words) {
+                    Ok(elimination) => settings.elimination = elimination,
+                    Err(Refusal { message, remedy }) => reader.faults.push(value.span(), item, message, remedy),
+                }
+            }
+        }
+        settings.elimination_place = Some(value.span().into());
+    }
+    settings
+}
+
+/// A step of elimination as a word: its name, or a flag.
+fn step_word(value: &DeValue<'_>) -> Option<String> {
+    match value {
+        DeValue::String(word) => Some(word.clone().into_owned()),
+        DeValue::Integer(flag) => Some(flag.as_str().to_owned()),
+        DeValue::Boolean(flag) => Some(u8::from(*flag).to_string()),
+        _ => None,
+    }
+}
+
+/// Puts the options of the command over `[mesh]`.
+fn apply_to_mesh(options: &Overrides, settings: &mut MeshSettings, faults: &mut Faults) {
+    if let Some(word) = &options.method {
+        let place = Place::Option(format!("--method {word}"));
+        settings.method = option(faults, &place, limits::mesh_method(word)).unwrap_or_default();
+    }
+    if let Some(words) = &options.elim {
+        let place = Place::Option(format!("--elim {}", words.join(",")));
+        let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "none").collect();
+        settings.elimination = option(faults, &place, limits::elimination(&words)).unwrap_or_default();
+        settings.elimination_place = Some(place);
+    }
+    if let (MeshMethod::Constrained, Some(place)) = (settings.method, &settings.elimination_place) {
+        let message = "`elim` is given, and the constrained way has nothing to eliminate";
+        faults.push(place.clone(), "[mesh]", message, "give method = \"unconstrained\" too, or leave `elim` out");
     }
 }
 

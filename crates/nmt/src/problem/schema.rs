@@ -4,6 +4,7 @@ use super::error::{Place, Source};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
 use nmt_mfdm::{Formulation, HoleCondition, Load};
+use nmt_tri::Elimination;
 
 /// A sound problem: every value within its limits, every outline closed, simple and in its place.
 #[derive(Clone, Debug)]
@@ -14,6 +15,8 @@ pub struct Problem {
     pub units: String,
     /// The subdomains in the order of the file, at least one.
     pub subdomains: Vec<Subdomain>,
+    /// How the clouds are triangulated.
+    pub mesh: MeshSettings,
     /// How it is solved.
     pub solve: SolveSettings,
     /// The file, for the place of a fault that is found later.
@@ -70,6 +73,40 @@ pub struct Hole {
     pub edge_places: Vec<Place>,
 }
 
+/// A way to triangulate a cloud.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum MeshMethod {
+    /// Constrained Delaunay; the default.
+    #[default]
+    Constrained,
+    /// The paper's: Delaunay of all nodes, elimination, completion.
+    Unconstrained,
+}
+
+impl MeshMethod {
+    /// Both ways.
+    pub const ALL: [Self; 2] = [Self::Constrained, Self::Unconstrained];
+
+    /// The word of problem files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constrained => "constrained",
+            Self::Unconstrained => "unconstrained",
+        }
+    }
+}
+
+/// `[mesh]`, options of the command included.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshSettings {
+    /// The way of every subdomain.
+    pub method: MeshMethod,
+    /// Steps of the unconstrained way.
+    pub elimination: Elimination,
+    /// Where `elim` is given.
+    pub elimination_place: Option<Place>,
+}
+
 /// `[solve]`, options of the command included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveSettings {
@@ -124,4 +161,8 @@ pub struct Overrides {
     pub star: Option<i64>,
     /// `--seed`.
     pub seed: Option<u64>,
+    /// `--method`.
+    pub method: Option<String>,
+    /// `--elim`: names of steps, or their flags 1 and 0.
+    pub elim: Option<Vec<String>>,
 }

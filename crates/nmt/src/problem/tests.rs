@@ -3,6 +3,7 @@
 use super::*;
 use nmt_curve::Curve;
 use nmt_mfdm::{Formulation, HoleCondition, Load};
+use nmt_tri::Elimination;
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -137,6 +138,8 @@ fn places_point_at_what_they_name() {
 #[test]
 fn options_replace_what_the_file_says() {
     let options = Overrides {
+        method: Some("unconstrained".into()),
+        elim: Some(vec!["outside".into(), "in_hole".into()]),
         nodes: Some([9, 8]),
         formulation: Some("variational".into()),
         twist: Some(0.5),
@@ -149,6 +152,8 @@ fn options_replace_what_the_file_says() {
     let problem = sound(EVERYTHING, &options);
     assert!(problem.subdomains.iter().all(|s| s.nodes == [9, 8] && s.formulation.is_none()));
     assert_eq!(problem.subdomains[0].nodes_place, Place::Option("--nodes 9,8".into()));
+    let steps = Elimination { outside: true, in_hole: true, tiny: false, complete: false };
+    assert_eq!((problem.mesh.method, problem.mesh.elimination), (MeshMethod::Unconstrained, steps));
     let solve = &problem.solve;
     assert_eq!(
         (solve.load, solve.holes, solve.star, solve.seed),
@@ -175,7 +180,7 @@ fn faults_of_options_name_the_option() {
         holes: Some("none".into()),
         order: Some(7),
         star: Some(3),
-        seed: None,
+        ..Overrides::default()
     };
     assert_eq!(
         faults(EVERYTHING, &options),

@@ -39,7 +39,7 @@ impl Table<'_, '_> {
 }
 
 /// The keys at the top of the file.
-pub(super) const TOP_KEYS: &[&str] = &["title", "units", "subdomain", "solve"];
+pub(super) const TOP_KEYS: &[&str] = &["title", "units", "subdomain", "mesh", "solve"];
 /// The keys of `[[subdomain]]`.
 pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "name",
@@ -59,14 +59,17 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
 ];
 /// The keys of `[[subdomain.hole]]`.
 pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle"];
+/// The keys of `[mesh]`.
+pub(super) const MESH_KEYS: &[&str] = &["method", "elim"];
 /// The keys of `[solve]`.
 pub(super) const SOLVE_KEYS: &[&str] = &["formulation", "twist", "torque", "holes", "order", "star", "seed"];
 
 /// Where a key may belong that stands in the wrong table.
-const TABLES: [(&str, &[&str]); 4] = [
+const TABLES: [(&str, &[&str]); 5] = [
     ("the top of the file", TOP_KEYS),
     ("[[subdomain]]", SUBDOMAIN_KEYS),
     ("[[subdomain.hole]]", HOLE_KEYS),
+    ("[mesh]", MESH_KEYS),
     ("[solve]", SOLVE_KEYS),
 ];
 

@@ -8,7 +8,7 @@ use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::Point;
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_mfdm::{StarReport, Stress};
-use nmt_tri::{Mesh, TriangleIndex, quality};
+use nmt_tri::{Mesh, MeshCensus, TriangleIndex, quality};
 use serde::Serialize;
 
 /// Everything a run has to say; [`Report::json`] writes it as report.json.
@@ -56,6 +56,9 @@ pub struct SubdomainReport {
     pub divisions: Vec<DivisionReport>,
     /// How evenly the nodes are spread.
     pub cloud_quality: Option<CloudQualityReport>,
+    /// Triangles by what became of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshCensusReport>,
     /// Shape of the triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<QualityReport>,
@@ -107,6 +110,25 @@ pub struct CloudQualityReport {
     pub ratio: f64,
     /// Coefficient of variation of the nearest-node distance.
     pub nearest_variation: f64,
+}
+
+/// Triangles by what became of them: `delaunay − outside − in_hole − tiny − crossing + completed` are in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MeshCensusReport {
+    /// The way of triangulation.
+    pub method: &'static str,
+    /// Delaunay triangles: of all nodes, or constrained ones in the material.
+    pub delaunay: usize,
+    /// Dropped: centroid outside the contour.
+    pub outside: usize,
+    /// Dropped: centroid in a hole.
+    pub in_hole: usize,
+    /// Dropped: too small.
+    pub tiny: usize,
+    /// Taken away by completion.
+    pub crossing: usize,
+    /// Added by completion.
+    pub completed: usize,
 }
 
 /// Shape of the triangles.
@@ -259,6 +281,9 @@ impl Report {
     pub fn of_meshes(problem: &Problem, parts: &[MeshPart]) -> Self {
         let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, part.mesh.cloud())));
+        if !problem.mesh.elimination.is_whole() {
+            report.warnings.extend(parts.iter().filter_map(warnings::of_mesh));
+        }
         report
     }
 
@@ -332,6 +357,7 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         census: CensusReport { grid, outside, in_hole, near_edge, near_node, kept },
         divisions: cloud.closings().iter().map(division).collect(),
         cloud_quality: nmt_cloud::quality(cloud).map(spread),
+        mesh: None,
         quality: None,
         solution: None,
         seconds: Seconds::default(),
@@ -341,8 +367,11 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
 fn mesh_report(part: &MeshPart) -> SubdomainReport {
     let mesh = &part.mesh;
     let of_quality = |q: nmt_tri::Quality| QualityReport { min: q.min, mean: q.mean, min_angle_deg: q.min_angle_deg };
+    let MeshCensus { delaunay, outside, in_hole, tiny, crossing, completed } = part.census;
+    let method = part.method.name();
     SubdomainReport {
         triangles: Some(mesh.n_triangles()),
+        mesh: Some(MeshCensusReport { method, delaunay, outside, in_hole, tiny, crossing, completed }),
         area: mesh.total_area(),
         centroid: mesh.centroid(),
         quality: quality(mesh).map(of_quality),

@@ -89,7 +89,14 @@ impl<U: Fn(i32) -> String> Text<U> {
             );
         }
         if let Some(triangles) = s.triangles {
-            self.row("triangles", triangles);
+            let census = s.mesh.filter(|census| census.method != "constrained");
+            let steps = census.map_or(String::new(), |c| {
+                format!(
+                    " ({}: {} Delaunay, {} outside, {} in holes, {} tiny, {} crossing dropped, {} added)",
+                    c.method, c.delaunay, c.outside, c.in_hole, c.tiny, c.crossing, c.completed
+                )
+            });
+            self.row("triangles", format!("{triangles}{steps}"));
         }
         self.row("area", format!("{}{u2}", number(s.area)));
         self.row("centroid", place(s.centroid));

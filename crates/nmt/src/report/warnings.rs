@@ -1,6 +1,6 @@
 //! What the user should know before trusting a number.
 
-use crate::pipeline::SolvedPart;
+use crate::pipeline::{MeshPart, SolvedPart};
 use crate::report::model::PointReport;
 use crate::report::singular::singular_vertices;
 use crate::report::text::{counted, place};
@@ -41,6 +41,12 @@ pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// A mesh that is not sound, as one is without all steps of elimination.
+pub(super) fn of_mesh(part: &MeshPart) -> Option<String> {
+    let error = part.mesh.check().err()?;
+    Some(format!("subdomain \"{}\": the mesh is not sound, for steps of `elim` are left out: {error}", part.name))
 }
 
 /// Warnings that need no solution: of the section, and of the condition on its holes.
