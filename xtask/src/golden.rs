@@ -9,6 +9,7 @@
 mod checksum;
 mod clouds;
 mod fixture;
+mod meshes;
 mod results;
 
 use crate::root;
@@ -223,7 +224,7 @@ mod tests {
         let (case, expected, found) = entries("cloud-holes");
         assert!(worst(&expected, &found).expect("entries").difference <= case.tolerance);
         // The first and the last number of each file, changed by what a digit can be.
-        for file in ["nodes", "segments", "census", "edges"] {
+        for file in ["nodes", "segments", "census", "edges", "mesh"] {
             let of_file = |e: &&mut Entry| e.id.starts_with(file);
             let n = expected.iter().filter(|e| e.id.starts_with(file)).count();
             assert!(n > 5, "{file}: {n}");

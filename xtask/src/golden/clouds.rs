@@ -1,7 +1,7 @@
 //! Clouds against the reference's: node by node, segment by segment, edge by edge.
 
 use super::fixture::{Table, numbers};
-use super::{Entry, Scale, read_problem};
+use super::{Entry, Scale, meshes, read_problem};
 use crate::root;
 use anyhow::{Context as _, Result, bail};
 use nmt::pipeline::{cloud_params, section};
@@ -30,6 +30,8 @@ pub fn entries(problem: &Path, expected: &Path) -> Result<(Vec<Entry>, Vec<Entry
         }
         of_reference.extend(table_entries(name, table.columns(), &table.rows, &sizes));
     }
+    let (of_meshes, found_in_meshes) = meshes::entries(&clouds, expected)?;
+    of_reference.extend(of_meshes);
     let mut found = Vec::new();
     let tables = [
         ("nodes", NODES, of_all(&clouds, |_, cloud| Ok(node_rows(cloud)))?),
@@ -41,6 +43,7 @@ pub fn entries(problem: &Path, expected: &Path) -> Result<(Vec<Entry>, Vec<Entry
         let columns: Vec<String> = columns.iter().map(|name| (*name).into()).collect();
         found.extend(table_entries(name, &columns, &rows, &sizes));
     }
+    found.extend(found_in_meshes);
     Ok((of_reference, found))
 }
 
