@@ -90,6 +90,9 @@ pub struct MeshKeys {
     /// Triangulation: constrained, or the paper's unconstrained
     #[arg(long)]
     pub method: Option<String>,
+    /// Sweeps of smoothing over the interior nodes
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub smooth: Option<i64>,
     /// Steps of the unconstrained way, of outside,in_hole,tiny,complete; or four flags such as 1,1,1,0; or none
     #[arg(long, value_name = "STEPS", value_delimiter = ',')]
     pub elim: Option<Vec<String>>,
@@ -129,7 +132,7 @@ impl ProblemArgs {
 
     /// What the options change of the file, without keys of [solve].
     pub fn overrides_with_mesh(&self, mesh: &MeshKeys) -> Overrides {
-        Overrides { method: mesh.method.clone(), elim: mesh.elim.clone(), ..self.overrides() }
+        Overrides { method: mesh.method.clone(), elim: mesh.elim.clone(), smooth: mesh.smooth, ..self.overrides() }
     }
 
     /// What the options change of the file.

@@ -91,7 +91,20 @@ fn nodes_and_mesh_stop_earlier_and_write_their_own_files() {
     let directory = scratch("earlier");
     for (command, files) in [
         ("nodes", &["nodes.csv", "nodes.svg", "nodes.png", "report.json"][..]),
-        ("mesh", &["nodes.csv", "mesh.vtu", "nodes.svg", "nodes.png", "mesh.svg", "mesh.png", "report.json"][..]),
+        (
+            "mesh",
+            &[
+                "nodes.csv",
+                "mesh.vtu",
+                "nodes.svg",
+                "nodes.png",
+                "quality.svg",
+                "quality.png",
+                "mesh.svg",
+                "mesh.png",
+                "report.json",
+            ][..],
+        ),
     ] {
         let out = directory.join(command);
         let shown = out.display().to_string();
@@ -111,6 +124,16 @@ fn nodes_and_mesh_stop_earlier_and_write_their_own_files() {
         let csv = std::fs::read_to_string(out.join("nodes.csv")).expect("nodes.csv");
         assert!(csv.starts_with("subdomain,node,x,y,kind,edges\n"));
     }
+}
+
+#[test]
+fn smoothing_is_reported_with_the_quality_before_and_after() {
+    let output = nmt(&["mesh", &problem("paper-4.toml"), "--nodes", "21,11", "--smooth", "3", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let part = &json(&output)["subdomains"][0];
+    assert_eq!(part["smoothing"]["sweeps"], 3);
+    let mean = |quality: &serde_json::Value| quality["mean"].as_f64().expect("a number");
+    assert!(mean(&part["quality"]) > mean(&part["smoothing"]["quality_before"]), "{part}");
 }
 
 #[test]

@@ -113,6 +113,22 @@ impl Cloud {
         })
     }
 
+    /// The same cloud with its interior nodes elsewhere, shape (n_interior, 2), in the same order.
+    ///
+    /// Boundary, clearance and census stay; the lattice does where every node is still in the box of its site.
+    ///
+    /// # Errors
+    /// [`CloudError::OtherNumber`] where `interior` has another length than the cloud has interior nodes.
+    pub fn with_interior(mut self, interior: &[Point]) -> Result<Self, CloudError> {
+        let n_boundary = self.n_boundary();
+        if interior.len() != self.n_interior() {
+            return Err(CloudError::OtherNumber { given: interior.len(), n_interior: self.n_interior() });
+        }
+        self.xy[n_boundary..].copy_from_slice(interior);
+        self.born = self.born.filter(|born| born.all_within_boxes(interior));
+        Ok(self)
+    }
+
     pub(crate) fn new(parts: CloudParts) -> Self {
         let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census } = parts;
         let none = NodeEdges { first: EdgeId(u32::MAX), second: EdgeId(u32::MAX) };

@@ -85,6 +85,14 @@ pub enum CloudError {
         /// Vertices of the cloud.
         n_vertices: usize,
     },
+    /// Interior nodes of another number than the cloud's.
+    #[error("{given} interior nodes are given for a cloud that has {n_interior}; give one place for each")]
+    OtherNumber {
+        /// How many places.
+        given: usize,
+        /// How many nodes.
+        n_interior: usize,
+    },
     /// A cloud that was put together from parts does not know the edges its nodes could slide along.
     #[error("the cloud was not generated from a section; generate one to randomise it")]
     NotGenerated,

@@ -27,6 +27,7 @@ mod error;
 mod locate;
 mod mesh;
 mod quality;
+mod smooth;
 mod ties;
 mod unconstrained;
 
@@ -35,4 +36,5 @@ pub use error::MeshError;
 pub use locate::{TriangleIndex, barycentric};
 pub use mesh::Mesh;
 pub use quality::{Quality, quality, shape};
+pub use smooth::smooth;
 pub use unconstrained::{Elimination, MeshCensus, Stages, stages};

@@ -1,11 +1,11 @@
 //! The pictures of a run: nodes, mesh and the four panels of the solution, from the pipeline's data.
 
-use crate::pipeline::SolvedPart;
-use crate::plot::{Caption, Fields, NodeMark, Part, mesh_figure, nodes_figure, solution_figure};
+use crate::pipeline::{MeshPart, SolvedPart};
+use crate::plot::{Caption, Fields, NodeMark, Part, histogram_figure, mesh_figure, nodes_figure, solution_figure};
 use crate::problem::Problem;
 use nmt_cloud::{Cloud, NodeKind};
 use nmt_geom::{LoopId, NodeId};
-use nmt_tri::{Mesh, Stages};
+use nmt_tri::{Mesh, Stages, quality};
 
 /// What a picture needs of one cloud or mesh, in the plain form that [`crate::plot`] takes.
 struct Drawn<'a> {
@@ -64,6 +64,17 @@ pub fn nodes_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str
 pub fn mesh_svg<'a>(problem: &Problem, parts: impl IntoIterator<Item = (&'a str, &'a Mesh)>) -> String {
     let drawn: Vec<Drawn> = parts.into_iter().map(|(name, mesh)| Drawn::of_mesh(name, mesh)).collect();
     mesh_figure(&caption(problem), &drawn.iter().map(Drawn::part).collect::<Vec<_>>())
+}
+
+/// quality.svg: shapes of the triangles of all subdomains, before and after smoothing where there was any.
+pub fn quality_svg(problem: &Problem, parts: &[MeshPart]) -> String {
+    let sum = |all: &mut dyn Iterator<Item = [usize; 10]>| {
+        all.fold([0; 10], |sum, counts| std::array::from_fn(|k| sum[k] + counts[k]))
+    };
+    let after = sum(&mut parts.iter().filter_map(|part| quality(&part.mesh)).map(|q| q.histogram));
+    let smoothed = parts.iter().any(|part| part.smoothing.is_some());
+    let before = sum(&mut parts.iter().filter_map(|part| Some(part.smoothing.as_ref()?.before.histogram)));
+    histogram_figure(&caption(problem), smoothed.then_some(before), after)
 }
 
 /// The paper's way to a mesh in four pictures, as in its Fig. 11: the cloud, its Delaunay triangles, what elimination leaves,

@@ -7,7 +7,7 @@ use crate::error::NmtError;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
-use nmt_tri::{Mesh, MeshCensus};
+use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
 
 /// A stage of the pipeline; an observer is told when one ends, so that whoever calls holds the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +61,17 @@ pub struct MeshPart {
     pub method: MeshMethod,
     /// Triangles by what became of them; the constrained way has none to drop or add.
     pub census: MeshCensus,
+    /// What smoothing started from, where there was any.
+    pub smoothing: Option<Smoothing>,
+}
+
+/// How a cloud was smoothed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothing {
+    /// Sweeps over the interior nodes.
+    pub sweeps: usize,
+    /// Quality of the mesh before.
+    pub before: Quality,
 }
 
 /// One subdomain solved.
@@ -163,19 +174,25 @@ fn star_fault(problem: &Problem, part: &CloudPart) -> Option<crate::problem::Pro
 /// # Errors
 /// [`NmtError::Mesh`] where a cloud cannot be triangulated.
 pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<MeshPart>, NmtError> {
-    let MeshSettings { method, elimination, .. } = &problem.mesh;
+    let MeshSettings { method, elimination, smooth: sweeps, .. } = &problem.mesh;
     let mesh = |(k, part): (usize, CloudPart)| {
         let CloudPart { name, edge_names, hole_names, section, cloud } = part;
-        let made = match method {
+        let failed = |source| NmtError::Mesh { subdomain: name.clone(), source };
+        let triangulate = |cloud: Cloud| match method {
             MeshMethod::Constrained => Mesh::constrained(cloud).map(|mesh| {
                 let census = MeshCensus { delaunay: mesh.n_triangles(), ..MeshCensus::default() };
                 (mesh, census)
             }),
             MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
         };
-        let (mesh, census) = made.map_err(|source| NmtError::Mesh { subdomain: name.clone(), source })?;
+        let (mut mesh, mut census) = triangulate(cloud).map_err(failed)?;
+        let before = quality(&mesh).filter(|_| *sweeps > 0);
+        if before.is_some() {
+            (mesh, census) = triangulate(smooth(&mesh, *sweeps)).map_err(failed)?;
+        }
+        let smoothing = before.map(|before| Smoothing { sweeps: *sweeps, before });
         observer(k, Stage::Mesh);
-        Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census })
+        Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census, smoothing })
     };
     clouds.into_iter().enumerate().map(mesh).collect()
 }

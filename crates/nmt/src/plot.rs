@@ -16,11 +16,12 @@
 //! | `topology` | edges and rim of a triangulation; edges as few long lines |
 //! | `contour`, `simplify` | boundary of {value ≥ level}, traced exactly, then thinned to what the eye sees |
 //! | `colour`, `scale` | colour maps; values → bands of colour, and the colour bar |
-//! | `nodes`, `mesh`, `solution` | the three figures |
+//! | `nodes`, `mesh`, `solution`, `histogram` | the figures |
 
 mod axes;
 mod colour;
 mod contour;
+mod histogram;
 mod mesh;
 mod nodes;
 mod page;
@@ -102,6 +103,17 @@ pub fn mesh_figure(caption: &Caption<'_>, parts: &[Part<'_>]) -> String {
 /// the scale ends at the 99.5th percentile, its bar in an arrow, and the bar says how high the peaks are.
 pub fn solution_figure(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> String {
     svg::render(&solution::scene(caption, parts))
+}
+
+/// SVG text of the shapes of triangles: the share of them by shape measure, from [0, 0.1) to [0.9, 1]; where `before` is
+/// given, beside those before smoothing.
+pub fn histogram_figure(caption: &Caption<'_>, before: Option<[usize; 10]>, after: [usize; 10]) -> String {
+    let mut series = Vec::new();
+    if let Some(counts) = before {
+        series.push(histogram::Series { name: "before smoothing", counts });
+    }
+    series.push(histogram::Series { name: "after smoothing", counts: after });
+    svg::render(&histogram::scene(caption, &series))
 }
 
 /// Largest magnitude of a coordinate or value that is drawn.

@@ -75,6 +75,7 @@ const CASES: &[Case] = &[
     case("an unknown way to a mesh", &[("[solve]", "[mesh]\nmethod = \"delaunay\"\n[solve]")]),
     case("steps that do not exist", &[("[solve]", "[mesh]\nmethod = \"unconstrained\"\nelim = [\"outsid\"]\n[solve]")]),
     case("elimination without need", &[("[solve]", "[mesh]\nelim = [1, 1, 1, 0]\n[solve]")]),
+    case("smoothing without measure", &[("[solve]", "[mesh]\nsmooth = -1\n[solve]")]),
     case("steps of the wrong kind", &[("[solve]", "[mesh]\nmethod = \"unconstrained\"\nelim = 1\n[solve]")]),
     // Keys.
     case("a misspelt key", &[("irregularity", "iregularity")]),

@@ -6,4 +6,5 @@ mod faults;
 mod invariants;
 mod locate;
 mod sections;
+mod smoothing;
 mod unconstrained;

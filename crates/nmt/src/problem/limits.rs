@@ -19,6 +19,9 @@ pub(super) const SMALLEST: f64 = 1.0e-30;
 /// Most nodes an edge may be given of its own: a cloud of 10⁸ grid points has 10⁴ along a side.
 const MOST_EDGE_NODES: i128 = 1_000_000;
 
+/// Most sweeps of smoothing: after some tens nothing moves any more.
+const MOST_SWEEPS: i128 = 1000;
+
 /// The orders of the MWLS polynomial that exist.
 const ORDERS: [usize; 1] = [2];
 
@@ -217,6 +220,14 @@ pub(super) fn elimination(words: &[&str]) -> Result<Elimination, Refusal> {
         taken[choice("step of elimination", word, &std::array::from_fn::<_, 4, _>(|k| (steps[k], k)))?] = true;
     }
     Ok(of(taken))
+}
+
+/// Sweeps of smoothing.
+pub(super) fn smooth(n: i128) -> Result<usize, Refusal> {
+    if (0..=MOST_SWEEPS).contains(&n) {
+        return Ok(n as usize);
+    }
+    refuse(format!("`smooth` is {n}, outside 0 … {MOST_SWEEPS}"), "give a number of sweeps; 3 to 10 are enough")
 }
 
 /// The unit of clearances by its word.

@@ -265,6 +265,8 @@ fn mesh(reader: &mut Reader<'_>, top: &Table<'_, '_>) -> MeshSettings {
     let method = table.get("method");
     let method = method.and_then(|v| reader.text(item, "method", v, "\"constrained\"", limits::mesh_method));
     settings.method = method.unwrap_or_default();
+    let smooth = table.get("smooth").and_then(|value| reader.whole(item, "smooth", value, "3", limits::smooth));
+    settings.smooth = smooth.unwrap_or_default();
     if let Some(value) = table.get("elim") {
         let remedy = "write the names of the steps to take, elim = [\"outside\", \"in_hole\", \"tiny\", \"complete\"], \
                       or a flag 1 or 0 for each";
@@ -302,6 +304,10 @@ fn apply_to_mesh(options: &Overrides, settings: &mut MeshSettings, faults: &mut 
     if let Some(word) = &options.method {
         let place = Place::Option(format!("--method {word}"));
         settings.method = option(faults, &place, limits::mesh_method(word)).unwrap_or_default();
+    }
+    if let Some(sweeps) = options.smooth {
+        let place = Place::Option(format!("--smooth {sweeps}"));
+        settings.smooth = option(faults, &place, limits::smooth(sweeps.into())).unwrap_or_default();
     }
     if let Some(words) = &options.elim {
         let place = Place::Option(format!("--elim {}", words.join(",")));

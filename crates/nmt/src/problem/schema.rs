@@ -105,6 +105,8 @@ pub struct MeshSettings {
     pub elimination: Elimination,
     /// Where `elim` is given.
     pub elimination_place: Option<Place>,
+    /// Sweeps of smoothing over the interior nodes; 0 by default.
+    pub smooth: usize,
 }
 
 /// `[solve]`, options of the command included.
@@ -163,6 +165,8 @@ pub struct Overrides {
     pub seed: Option<u64>,
     /// `--method`.
     pub method: Option<String>,
+    /// `--smooth`.
+    pub smooth: Option<i64>,
     /// `--elim`: names of steps, or their flags 1 and 0.
     pub elim: Option<Vec<String>>,
 }

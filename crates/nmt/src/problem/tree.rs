@@ -60,7 +60,7 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
 /// The keys of `[[subdomain.hole]]`.
 pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle"];
 /// The keys of `[mesh]`.
-pub(super) const MESH_KEYS: &[&str] = &["method", "elim"];
+pub(super) const MESH_KEYS: &[&str] = &["method", "elim", "smooth"];
 /// The keys of `[solve]`.
 pub(super) const SOLVE_KEYS: &[&str] = &["formulation", "twist", "torque", "holes", "order", "star", "seed"];
 

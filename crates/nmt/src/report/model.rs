@@ -59,6 +59,9 @@ pub struct SubdomainReport {
     /// Triangles by what became of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshCensusReport>,
+    /// What smoothing started from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<SmoothingReport>,
     /// Shape of the triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<QualityReport>,
@@ -129,6 +132,15 @@ pub struct MeshCensusReport {
     pub crossing: usize,
     /// Added by completion.
     pub completed: usize,
+}
+
+/// Smoothing of the cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SmoothingReport {
+    /// Sweeps over the interior nodes.
+    pub sweeps: usize,
+    /// Shape of the triangles before.
+    pub quality_before: QualityReport,
 }
 
 /// Shape of the triangles.
@@ -358,6 +370,7 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         divisions: cloud.closings().iter().map(division).collect(),
         cloud_quality: nmt_cloud::quality(cloud).map(spread),
         mesh: None,
+        smoothing: None,
         quality: None,
         solution: None,
         seconds: Seconds::default(),
@@ -366,7 +379,9 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
 
 fn mesh_report(part: &MeshPart) -> SubdomainReport {
     let mesh = &part.mesh;
-    let of_quality = |q: nmt_tri::Quality| QualityReport { min: q.min, mean: q.mean, min_angle_deg: q.min_angle_deg };
+    let of_quality = |q: &nmt_tri::Quality| QualityReport { min: q.min, mean: q.mean, min_angle_deg: q.min_angle_deg };
+    let smoothing =
+        part.smoothing.as_ref().map(|s| SmoothingReport { sweeps: s.sweeps, quality_before: of_quality(&s.before) });
     let MeshCensus { delaunay, outside, in_hole, tiny, crossing, completed } = part.census;
     let method = part.method.name();
     SubdomainReport {
@@ -374,7 +389,8 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
         mesh: Some(MeshCensusReport { method, delaunay, outside, in_hole, tiny, crossing, completed }),
         area: mesh.total_area(),
         centroid: mesh.centroid(),
-        quality: quality(mesh).map(of_quality),
+        quality: quality(mesh).as_ref().map(of_quality),
+        smoothing,
         seconds: Seconds { mesh: Some(0.0), ..Seconds::default() },
         ..cloud_report(&part.name, &part.edge_names, mesh.cloud())
     }

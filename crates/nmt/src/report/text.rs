@@ -1,6 +1,6 @@
 //! The report as text: the paper's report of generated and deleted nodes, mesh, solver, results.
 
-use crate::report::model::{PointReport, Report, SolutionReport, SubdomainReport};
+use crate::report::model::{PointReport, Report, SmoothingReport, SolutionReport, SubdomainReport};
 use std::fmt::Write as _;
 
 /// Width of the left column.
@@ -100,6 +100,10 @@ impl<U: Fn(i32) -> String> Text<U> {
         }
         self.row("area", format!("{}{u2}", number(s.area)));
         self.row("centroid", place(s.centroid));
+        if let Some(SmoothingReport { sweeps, quality_before: q }) = &s.smoothing {
+            let before = format!("min {:.3}, mean {:.3}, smallest angle {:.1}°", q.min, q.mean, q.min_angle_deg);
+            self.row("quality before", format!("{before} ({} of smoothing)", counted(*sweeps, "sweep", "sweeps")));
+        }
         if let Some(q) = &s.quality {
             self.row(
                 "quality",
