@@ -21,8 +21,10 @@ mod adjacency;
 mod carve;
 mod delaunay;
 mod error;
+mod lattice;
 mod locate;
 mod mesh;
+mod order;
 mod quality;
 mod ties;
 

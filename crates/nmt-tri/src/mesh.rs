@@ -4,6 +4,8 @@ use crate::adjacency::edges;
 use crate::carve::carve;
 use crate::delaunay::constrained;
 use crate::error::MeshError;
+use crate::lattice::triangulate;
+use crate::order::in_order;
 use crate::ties::settle;
 use nmt_cloud::Cloud;
 use nmt_geom::point::{cross, sub};
@@ -25,7 +27,8 @@ impl Mesh {
     /// The constrained Delaunay triangulation of the cloud, cut to its real boundary.
     ///
     /// Where four nodes lie on one circle the diagonal that contains the smallest node number is taken; triangles begin
-    /// with their smallest node and are sorted, so that the mesh is a function of the cloud alone.
+    /// with their smallest node and are sorted, so that the mesh is a function of the cloud alone. A cloud that was
+    /// generated on a lattice is triangulated by way of it, any other by [`Self::constrained_general`].
     ///
     /// # Errors
     /// [`MeshError`] where two nodes coincide, or a segment of the real boundary is crossed.
@@ -43,12 +46,28 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn constrained(cloud: Cloud) -> Result<Self, MeshError> {
+        match triangulate(&cloud) {
+            Some(tri_nodes) => Ok(Self { cloud, tri_nodes }),
+            None => Self::constrained_general(cloud),
+        }
+    }
+
+    /// [`Self::constrained`] for any cloud, whether it was born on a lattice or not: slower, with the same triangles.
+    ///
+    /// # Errors
+    /// Those of [`Self::constrained`].
+    pub fn constrained_general(cloud: Cloud) -> Result<Self, MeshError> {
         let mut triangles = carve(&cloud, constrained(&cloud)?)?;
         settle(cloud.xy(), &mut triangles);
-        let mut tri_nodes: Vec<[NodeId; 3]> =
-            triangles.nodes.iter().map(|nodes| smallest_first(*nodes).map(NodeId)).collect();
-        tri_nodes.sort_unstable();
+        let nodes = triangles.nodes;
+        let tri_nodes = in_order(cloud.n_nodes(), || nodes.iter().copied()).unwrap_or_default();
         Ok(Self { cloud, tri_nodes })
+    }
+
+    /// [`Self::constrained`] by way of the cloud's lattice; `None` where the general way is taken instead. For tests.
+    #[doc(hidden)]
+    pub fn constrained_on_lattice(cloud: Cloud) -> Option<Self> {
+        triangulate(&cloud).map(|tri_nodes| Self { cloud, tri_nodes })
     }
 
     /// The cloud it stands on.
@@ -146,16 +165,5 @@ impl Mesh {
         let found = used.len() as i64 - edges.len() as i64 + self.n_triangles() as i64;
         let expected = 2 - boundary.n_loops() as i64;
         if found == expected { Ok(()) } else { Err(MeshError::Euler { found, expected }) }
-    }
-}
-
-fn smallest_first(nodes: [u32; 3]) -> [u32; 3] {
-    let [a, b, c] = nodes;
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
     }
 }

@@ -43,7 +43,7 @@ fn flip_if_tied(xy: &[Point], triangles: &mut Triangles, t: usize, k: usize) -> 
     let [a, b, c] = turned(triangles.nodes[t], k);
     let m = (0..3).find(|&m| triangles.nodes[u][m] == b && triangles.nodes[u][(m + 1) % 3] == a)?;
     let d = triangles.nodes[u][(m + 2) % 3];
-    if a.min(b) < c.min(d) || !is_tie([a, b, c, d].map(|n| xy[n as usize])) {
+    if !must_flip([a, b, c, d], |n| xy[n as usize]) {
         return None;
     }
     // New: t = (c, a, d), u = (d, b, c).
@@ -63,8 +63,14 @@ fn flip_if_tied(xy: &[Point], triangles: &mut Triangles, t: usize, k: usize) -> 
     Some(neighbour)
 }
 
+/// True where the diagonal a b of the triangles (a, b, c) and (b, a, d) is tied and c d contains the smallest number.
+#[inline]
+pub(crate) fn must_flip([a, b, c, d]: [u32; 4], at: impl Fn(u32) -> Point) -> bool {
+    c.min(d) < a.min(b) && is_tie([a, b, c, d].map(at))
+}
+
 /// True where the quadrilateral a d b c (diagonal a b) has its corners on one circle and may be cut the other way.
-fn is_tie([a, b, c, d]: [Point; 4]) -> bool {
+pub(crate) fn is_tie([a, b, c, d]: [Point; 4]) -> bool {
     let [u, v, w] = [sub(a, d), sub(b, d), sub(c, d)];
     let lift = |p: Point| dot(p, p);
     let incircle = lift(u) * cross(v, w) + lift(v) * cross(w, u) + lift(w) * cross(u, v);
