@@ -70,8 +70,8 @@ impl SegmentIndex {
 
     /// True where `holds` does for one of the segments whose boxes share a point with `window`; it is asked until then.
     #[inline]
-    pub fn any_in(&self, window: &Bbox, mut holds: impl FnMut(usize) -> bool) -> bool {
-        self.any_in_boxes(|b| b.overlaps(window, self.room), |k| holds(k))
+    pub fn any_in(&self, window: &Bbox, holds: impl FnMut(usize) -> bool) -> bool {
+        self.any_in_boxes(|b| b.overlaps(window, self.room), holds)
     }
 
     #[inline]

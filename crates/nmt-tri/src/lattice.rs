@@ -8,6 +8,7 @@
 //! `None`: then the general way, spade's, is taken, which also words the errors.
 
 mod boxes;
+mod cell;
 mod cells;
 mod flips;
 mod frame;
@@ -15,12 +16,13 @@ mod ghosts;
 mod half_edges;
 mod insert;
 mod recover;
+mod rows;
 
 use crate::delaunay::power_of_two_near;
 use crate::order::in_order;
 use boxes::Boxes;
 use frame::Frame;
-use half_edges::{NONE, Triangulation};
+use half_edges::{MOST_SLOTS, NONE, Triangulation};
 use nmt_cloud::Cloud;
 use nmt_geom::NodeId;
 
@@ -35,12 +37,11 @@ pub(crate) fn triangulate(cloud: &Cloud) -> Option<Vec<[NodeId; 3]>> {
     triangulation.drop_outside(cloud)?;
     triangulation.remove_ghosts()?;
     triangulation.settle_ties();
-    let origins = triangulation.origins;
-    finish(cloud, &origins)
+    finish(cloud, &triangulation.into_origins())
 }
 
-/// A triangulation without triangles, with room for those of so many owners of boxes; `None` where the boundary's nodes are
-/// not each on one loop.
+/// A triangulation without triangles, with room for those of so many owners of boxes; `None` where there would be too
+/// many, or a boundary node is not on exactly one loop.
 fn empty(cloud: &Cloud, n_owners: usize) -> Option<Triangulation<'_>> {
     let n_boundary = cloud.n_boundary();
     let mut leads_to = vec![NONE; n_boundary];
@@ -53,6 +54,9 @@ fn empty(cloud: &Cloud, n_owners: usize) -> Option<Triangulation<'_>> {
     }
     // A cell for each box, and two triangles for each inserted node.
     let n_slots = 6 * (n_owners + n_boundary);
+    if n_slots >= MOST_SLOTS {
+        return None;
+    }
     Some(Triangulation {
         xy: cloud.xy(),
         ghosts: Vec::new(),
@@ -68,11 +72,13 @@ fn empty(cloud: &Cloud, n_owners: usize) -> Option<Triangulation<'_>> {
     })
 }
 
-/// The triangles that are left, in order; `None` where they are not as many as Euler's formula says, or one has a ghost.
+/// The triangles that are left, in order; `None` where they are not as many as Euler's formula says, less those with a
+/// ghost.
 fn finish(cloud: &Cloud, origins: &[u32]) -> Option<Vec<[NodeId; 3]>> {
-    let alive = || origins.as_chunks::<3>().0.iter().copied().filter(|nodes| nodes[0] != NONE);
-    let holes = cloud.boundary().n_loops() - 1;
-    let expected = 2 * cloud.n_nodes() + 2 * holes - cloud.n_boundary() - 2;
-    let triangles = in_order(cloud.n_nodes(), alive)?;
+    let n_nodes = cloud.n_nodes();
+    // A triangle that is no more begins with the largest number.
+    let is_of_nodes = |[a, b, c]: &[u32; 3]| (*a.max(b).max(c) as usize) < n_nodes;
+    let triangles = in_order(n_nodes, || origins.as_chunks().0.iter().copied().filter(is_of_nodes));
+    let expected = 2 * n_nodes + 2 * cloud.boundary().n_loops() - cloud.n_boundary() - 4;
     (triangles.len() == expected).then_some(triangles)
 }

@@ -3,44 +3,50 @@
 use nmt_geom::NodeId;
 
 /// Turns and sorts the triangles that `triangles` gives, the same each time; O(nodes + triangles) where no node begins
-/// many.
-///
-/// `None` where one has a node that is not below `n_nodes`.
-pub(crate) fn in_order<I>(n_nodes: usize, triangles: impl Fn() -> I) -> Option<Vec<[NodeId; 3]>>
+/// many. Their nodes are below `n_nodes`.
+pub(crate) fn in_order<I>(n_nodes: usize, triangles: impl Fn() -> I) -> Vec<[NodeId; 3]>
 where
     I: Iterator<Item = [u32; 3]>,
 {
-    // Buckets by first node; those of a bucket are few.
-    let mut ends = vec![0u32; n_nodes + 1];
+    // Buckets by first node, one after the other: first their sizes, then where each begins.
+    let mut next = vec![0u32; n_nodes + 1];
     let mut n_triangles = 0;
     for [a, b, c] in triangles() {
-        if a.max(b).max(c) as usize >= n_nodes {
-            return None;
-        }
-        ends[a.min(b).min(c) as usize + 1] += 1;
+        next[a.min(b).min(c) as usize] += 1;
         n_triangles += 1;
     }
-    let mut sum = 0;
-    for end in &mut ends {
-        sum += *end;
-        *end = sum;
+    let mut start = 0;
+    for size in &mut next {
+        start += std::mem::replace(size, start);
     }
     let mut sorted = vec![[NodeId(0); 3]; n_triangles];
     for nodes in triangles() {
         let nodes = smallest_first(nodes);
-        let end = &mut ends[nodes[0] as usize];
-        sorted[*end as usize] = nodes.map(NodeId);
-        *end += 1;
+        let next = &mut next[nodes[0] as usize];
+        sorted[*next as usize] = nodes.map(NodeId);
+        *next += 1;
     }
+    // Each bucket now ends where the next one begins.
     let mut start = 0;
-    for end in ends {
-        let bucket = sorted.get_mut(start..end as usize)?;
-        if bucket.len() > 1 {
-            bucket.sort_unstable();
-        }
+    for end in next {
+        sort_bucket(&mut sorted[start..end as usize]);
         start = end as usize;
     }
-    Some(sorted)
+    sorted
+}
+
+/// Most buckets hold two or three triangles.
+#[inline]
+fn sort_bucket(bucket: &mut [[NodeId; 3]]) {
+    match bucket {
+        [] | [_] => {}
+        [a, b] => {
+            if a > b {
+                std::mem::swap(a, b);
+            }
+        }
+        _ => bucket.sort_unstable(),
+    }
 }
 
 #[inline]
@@ -51,5 +57,17 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
         [b, c, a]
     } else {
         [c, a, b]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_begin_with_their_smallest_node_and_are_sorted() {
+        let given = [[5, 0, 4], [3, 1, 2], [4, 2, 0], [1, 0, 5], [2, 1, 0]];
+        let expected = [[0, 2, 1], [0, 4, 2], [0, 4, 5], [0, 5, 1], [1, 2, 3]];
+        assert_eq!(in_order(6, || given.into_iter()), expected.map(|nodes| nodes.map(NodeId)));
     }
 }

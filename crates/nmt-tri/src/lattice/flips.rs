@@ -25,7 +25,7 @@ enum Verdict {
 
 impl Triangulation<'_> {
     /// The nodes of the two triangles at a side: its own two, then those opposite, left first; `None` where it must stay.
-    #[inline]
+    #[inline(always)]
     fn quadrilateral(&self, h: u32) -> Option<([u32; 4], u32)> {
         let twin = self.twin(h)?;
         let (a, b) = (self.origin(h), self.origin(next(h)));
@@ -40,8 +40,8 @@ impl Triangulation<'_> {
     /// A flip lowers the surface lifted to the paraboloid, so this ends.
     pub fn make_delaunay(&mut self) {
         while let Some(h) = self.unsettled.pop() {
-            let Some((nodes, twin)) = self.quadrilateral(h) else { continue };
-            let corners = nodes.map(|n| self.at(n));
+            let Some(([a, b, c, d], twin)) = self.quadrilateral(h) else { continue };
+            let corners = [self.at(a), self.at(b), self.at(c), self.at(d)];
             let flips = match verdict(corners) {
                 Verdict::Legal => false,
                 Verdict::Illegal => true,
@@ -90,5 +90,43 @@ fn verdict([a, b, c, d]: [Point; 4]) -> Verdict {
         Verdict::Illegal
     } else {
         Verdict::Near
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of triangles between two rows of nodes, cut the wrong way.
+    fn strip(n: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let lower = (0..n).map(|k| [f64::from(k), 0.0]);
+        let upper = (0..n).map(|k| [f64::from(k) + 0.4, 1.0]);
+        let cells = (0..n - 1).flat_map(|k| [[k, k + 1, n + k + 1], [k, n + k + 1, n + k]]);
+        (lower.chain(upper).collect(), cells.collect())
+    }
+
+    #[test]
+    fn flips_find_the_delaunay_triangulation_but_for_segments() {
+        let (xy, triangles) = strip(4);
+        for (segments, expected) in [
+            (vec![], vec![[0, 1, 4], [1, 2, 5], [1, 5, 4], [2, 3, 6], [2, 6, 5], [3, 7, 6]]),
+            (vec![[1, 6]], vec![[0, 1, 4], [1, 2, 6], [1, 5, 4], [1, 6, 5], [2, 3, 6], [3, 7, 6]]),
+        ] {
+            let mut strip = Triangulation::sample(&xy, &[], &segments, &triangles);
+            strip.unsettled.extend(0..18);
+            strip.make_delaunay();
+            assert_eq!(strip.triangles(), expected);
+        }
+    }
+
+    #[test]
+    fn suspects_are_settled_by_number() {
+        let xy = [[1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0]];
+        let mut square = Triangulation::sample(&xy, &[], &[], &[[2, 3, 1], [3, 0, 1]]);
+        square.unsettled.extend(0..6);
+        square.make_delaunay();
+        assert_eq!(square.triangles(), [[0, 1, 3], [1, 2, 3]]);
+        square.settle_ties();
+        assert_eq!(square.triangles(), [[0, 1, 2], [0, 2, 3]]);
     }
 }

@@ -21,7 +21,8 @@ impl Frame {
         let lattice = *cloud.lattice()?;
         let spacing = lattice.spacing();
         let is_usable = |h: &f64| h.is_finite() && *h > 0.0;
-        let fits = SIZES.contains(&cloud.size()) && spacing.iter().all(is_usable) && lattice.shape.iter().all(|n| *n >= 2);
+        let fits =
+            SIZES.contains(&cloud.size()) && spacing.iter().all(is_usable) && lattice.shape.iter().all(|n| *n >= 2);
         fits.then(|| Self { lattice, spacing, shape: lattice.shape.map(|n| n + 2) })
     }
 

@@ -69,3 +69,30 @@ impl Triangulation<'_> {
         Some(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nmt_geom::Point;
+
+    #[test]
+    fn a_ghost_among_any_number_of_nodes_leaves_their_delaunay_triangulation() {
+        for n in 3..12u32 {
+            let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(n);
+            // On an ellipse with one node pulled in, so that its polygon has a reflex corner.
+            let radius = |k: u32| if k == 1 && n > 4 { 0.6 } else { 1.0 };
+            let xy: Vec<Point> =
+                (0..n).map(|k| [2.0 * radius(k) * angle(k).cos(), radius(k) * angle(k).sin()]).collect();
+            let fan: Vec<[u32; 3]> = (0..n).map(|k| [n, k, (k + 1) % n]).collect();
+            let mut ring = Triangulation::sample(&xy, &[[0.013, 0.007]], &[], &fan);
+            assert_eq!(ring.remove_ghosts(), Some(()));
+            let triangles = ring.triangles();
+            assert_eq!(triangles.len(), n as usize - 2);
+            assert!(triangles.iter().flatten().all(|node| *node < n));
+            ring.unsettled
+                .extend((0..ring.origins.len() as u32).filter(|h| ring.origins[(h - h % 3) as usize] != NONE));
+            ring.make_delaunay();
+            assert_eq!(ring.triangles(), triangles);
+        }
+    }
+}

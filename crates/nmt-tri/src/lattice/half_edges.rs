@@ -5,8 +5,11 @@ use nmt_geom::Point;
 /// Says that there is no half-edge, or no node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Twins from here on are borders. Half-edges stay below: six a box, [`nmt_cloud::MAX_GRID_POINTS`] boxes.
+/// Twins from here on are borders: one that waits for the next row of cells, with its column, or none at all.
 const BORDER: u32 = 1 << 31;
+
+/// Slots that half-edges may take: as many as are no border.
+pub(super) const MOST_SLOTS: usize = BORDER as usize;
 
 /// The half-edge after `h` around its triangle.
 #[inline]
@@ -17,7 +20,7 @@ pub(super) fn next(h: u32) -> u32 {
 /// The half-edge before `h` around its triangle.
 #[inline]
 pub(super) fn prev(h: u32) -> u32 {
-    if h % 3 == 0 { h + 2 } else { h - 1 }
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 /// The three half-edges of the triangle that `h` belongs to.
@@ -83,6 +86,11 @@ pub(super) struct Triangulation<'a> {
 }
 
 impl Triangulation<'_> {
+    /// The nodes of the triangles, three each; memory for the rest is given back.
+    pub fn into_origins(self) -> Vec<u32> {
+        self.origins
+    }
+
     /// Where a node or ghost is.
     #[inline]
     pub fn at(&self, node: u32) -> Point {
@@ -183,5 +191,86 @@ impl Triangulation<'_> {
         }
         self.note_leaving(h);
         self.note_leaving(twin);
+    }
+}
+
+#[cfg(test)]
+pub(super) mod samples {
+    use super::*;
+
+    impl<'a> Triangulation<'a> {
+        /// Triangles on `xy` and `ghosts`, with `segments` among the first nodes, a loop each.
+        pub fn sample(xy: &'a [Point], ghosts: &[Point], segments: &[[u32; 2]], triangles: &[[u32; 3]]) -> Self {
+            let n_boundary = segments.iter().flatten().max().map_or(0, |n| n + 1) as usize;
+            let mut leads_to = vec![NONE; n_boundary];
+            segments.iter().for_each(|[from, to]| leads_to[*from as usize] = *to);
+            let origins = triangles.concat();
+            let mut sample = Self {
+                xy,
+                ghosts: ghosts.to_vec(),
+                scale: 1.0,
+                leads_to,
+                twins: vec![NONE; origins.len()],
+                origins,
+                leaving_boundary: vec![NONE; n_boundary],
+                leaving_ghost: vec![NONE; ghosts.len()],
+                front: Vec::new(),
+                unsettled: Vec::new(),
+                suspects: Vec::new(),
+            };
+            for h in 0..sample.origins.len() as u32 {
+                let ends = |h: u32| [sample.origin(h), sample.origin(next(h))];
+                let [from, to] = ends(h);
+                let twin = (0..sample.origins.len() as u32).find(|g| ends(*g) == [to, from]);
+                sample.twins[h as usize] = twin.unwrap_or(NONE);
+                sample.note_leaving(h);
+            }
+            sample
+        }
+
+        /// The triangles there are, in order; asserts that they are counter-clockwise and that twins are twins.
+        pub fn triangles(&self) -> Vec<[u32; 3]> {
+            for h in (0..self.origins.len() as u32).filter(|h| !self.is_dead(*h)) {
+                if let Some(twin) = self.twin(h) {
+                    assert_eq!(self.twin(twin), Some(h));
+                    assert_eq!((self.origin(h), self.origin(next(h))), (self.origin(next(twin)), self.origin(twin)));
+                }
+                let [a, b, c] = sides(h).map(|s| self.at(self.origin(s)));
+                assert_eq!(nmt_geom::side(a, b, c), std::cmp::Ordering::Greater);
+            }
+            let alive = self.origins.as_chunks::<3>().0.iter().filter(|nodes| nodes[0] != NONE);
+            crate::order::in_order(self.xy.len() + self.ghosts.len(), || alive.clone().copied())
+                .iter()
+                .map(|nodes| nodes.map(|node| node.0))
+                .collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [Point; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    #[test]
+    fn a_flip_replaces_one_diagonal_by_the_other_and_two_flips_turn_it_round() {
+        let mut two = Triangulation::sample(&SQUARE, &[], &[], &[[0, 1, 2], [0, 2, 3]]);
+        for expected in [[[0, 1, 3], [1, 2, 3]], [[0, 1, 2], [0, 2, 3]]] {
+            let h = (0..6).find(|h| two.twin(*h).is_some()).expect("a diagonal");
+            two.flip(h, two.twins[h as usize]);
+            assert_eq!(two.triangles(), expected);
+        }
+    }
+
+    #[test]
+    fn what_leaves_a_boundary_node_is_known_after_every_flip() {
+        let segments = [[0, 1], [1, 2], [2, 3], [3, 0]];
+        let mut two = Triangulation::sample(&SQUARE, &[], &segments, &[[0, 1, 2], [0, 2, 3]]);
+        for _ in 0..4 {
+            let h = (0..6).find(|h| two.twin(*h).is_some()).expect("a diagonal");
+            two.flip(h, two.twins[h as usize]);
+            assert!((0..4).all(|node| two.origin(two.leaving_boundary[node]) == node as u32));
+        }
     }
 }

@@ -43,8 +43,7 @@ impl Triangulation<'_> {
         let (at_p, at_q) = (self.at(p), self.at(q));
         let of_line = |n: u32| side(at_p, at_q, self.at(n));
         let first = *self.leaving_boundary.get(p as usize)?;
-        let is_in_the_way =
-            |n: u32| of_line(n) == Ordering::Equal && dot(sub(self.at(n), at_p), sub(at_q, at_p)) > 0.0;
+        let is_in_the_way = |n: u32| of_line(n) == Ordering::Equal && dot(sub(self.at(n), at_p), sub(at_q, at_p)) > 0.0;
         let wedge = self.around(first, |h| {
             let (u, v) = (self.origin(next(h)), self.origin(prev(h)));
             if is_in_the_way(u) {
@@ -165,5 +164,43 @@ impl Triangulation<'_> {
             self.origins[(h - h % 3) as usize] = NONE;
         }
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes 0 and 1 at the ends of a row, with nodes above and below that hide them from each other.
+    fn lens(below: &[Point]) -> Vec<Point> {
+        [[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [2.0, 1.2], [3.0, 1.0]].iter().chain(below).copied().collect()
+    }
+
+    #[test]
+    fn a_segment_across_several_triangles_is_recovered_with_all_nodes() {
+        let xy = lens(&[[1.0, -1.0], [3.0, -1.0]]);
+        let triangles = [[0, 5, 2], [5, 3, 2], [5, 6, 3], [6, 4, 3], [6, 1, 4]];
+        let mut lens = Triangulation::sample(&xy, &[[-9.0, 0.0]], &[[0, 1]], &triangles);
+        // Turning about node 0 stops at the border: begin at its first triangle.
+        lens.leaving_boundary[0] = 0;
+        let cavity = lens.cavity(0, 1).expect("nothing lies on it");
+        assert_eq!((&*cavity.left, &*cavity.right), (&[2, 3, 4][..], &[5, 6][..]));
+        lens.fill(&cavity, 0, 1).expect("two polygons");
+        lens.make_delaunay();
+        let triangles = lens.triangles();
+        assert_eq!(triangles.len(), 5);
+        assert!(triangles.iter().any(|t| t[0] == 0 && t[1] == 1) && triangles.iter().any(|t| t[0] == 0 && t[2] == 1));
+    }
+
+    #[test]
+    fn a_node_on_the_way_or_another_segment_is_refused() {
+        let xy = lens(&[[1.0, -1.0], [3.0, -1.0], [2.0, 0.0]]);
+        let triangles = [[0, 5, 2], [5, 7, 2], [2, 7, 3], [5, 6, 7], [6, 4, 7], [7, 4, 3], [6, 1, 4]];
+        let lens_with_node = Triangulation::sample(&xy, &[], &[[0, 1]], &triangles);
+        assert!(lens_with_node.cavity(0, 1).is_none());
+        let xy = lens(&[[1.0, -1.0], [3.0, -1.0]]);
+        let triangles = [[0, 5, 2], [5, 3, 2], [5, 6, 3], [6, 4, 3], [6, 1, 4]];
+        let crossed = Triangulation::sample(&xy, &[], &[[0, 1], [3, 6]], &triangles);
+        assert!(crossed.cavity(0, 1).is_none());
     }
 }

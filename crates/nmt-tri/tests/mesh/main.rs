@@ -4,5 +4,6 @@
 mod delaunay;
 mod faults;
 mod invariants;
+mod lattice;
 mod locate;
 mod sections;
