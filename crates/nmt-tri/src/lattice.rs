@@ -1,11 +1,11 @@
-//! Constrained Delaunay triangulation of a cloud that was born on a lattice, many times faster than the general way, with
-//! the same triangles.
+//! Constrained Delaunay triangulation of a cloud that was born on a lattice: many times faster than the general way,
+//! with the same triangles.
 //!
-//! Nodes that are each in the box of their own site are triangulated cell by cell, without a search. Boundary nodes take
-//! free boxes; what is left free in the material or within a box of the boundary gets a ghost, a node of our own, so
-//! that cells cover the boundary on both sides. Afterwards boundary nodes without a box are inserted, segments recovered,
-//! the outside dropped and the ghosts inside taken out, all of it near the boundary alone. Whatever is unusual ends in
-//! `None`: then the general way, spade's, is taken, which also words the errors.
+//! Nodes that are each in the box of their own site are triangulated cell by cell, without a search. Boundary nodes
+//! take free boxes; what is left free in the material or within a box of the boundary gets a ghost, a node of our own,
+//! so that cells cover the boundary on both sides. Afterwards boundary nodes without a box are inserted, segments
+//! recovered, the outside dropped and the ghosts inside taken out, all of it near the boundary alone. Whatever is
+//! unusual ends in `None`: then the general way, spade's, is taken, which also words the errors.
 
 mod boxes;
 mod cell;

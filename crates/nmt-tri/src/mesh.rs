@@ -6,7 +6,7 @@ use crate::delaunay::constrained;
 use crate::error::MeshError;
 use crate::lattice::triangulate;
 use crate::order::in_order;
-use crate::ties::settle;
+use crate::ties::{Placed, settle};
 use nmt_cloud::Cloud;
 use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
@@ -60,9 +60,10 @@ impl Mesh {
     /// # Errors
     /// Those of [`Self::constrained`].
     pub fn constrained_general(cloud: Cloud) -> Result<Self, MeshError> {
-        let mut triangles = carve(&cloud, constrained(&cloud)?)?;
-        settle(cloud.xy(), &mut triangles);
-        let nodes = triangles.nodes;
+        let mut placed = Placed { xy: cloud.xy(), triangles: carve(&cloud, constrained(&cloud)?)? };
+        let n_sides = 3 * placed.triangles.nodes.len() as u32;
+        settle(&mut placed, 0..n_sides);
+        let nodes = placed.triangles.nodes;
         let tri_nodes = in_order(cloud.n_nodes(), || nodes.iter().copied());
         Ok(Self { cloud, tri_nodes })
     }

@@ -3,7 +3,6 @@
 //! Corners a, b, c, d run counter-clockwise from the lower left one.
 
 use super::half_edges::Corner;
-use crate::ties::is_tie;
 use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{Point, in_circle, side};
 use std::cmp::Ordering;
@@ -130,8 +129,11 @@ pub(super) fn cut_exactly([a, b, c, d]: [u32; 4], corners: [Point; 4], scale: f6
     let may_be_bd = is_left(p_b, p_c, p_d) && is_left(p_d, p_a, p_b);
     let is_ac = match (may_be_ac, may_be_bd) {
         (false, false) => return None,
-        (true, true) if is_tie([p_c, p_a, p_b, p_d]) => a.min(c) < b.min(d),
-        (true, true) => in_circle(p_a, p_b, p_c, p_d) != Ordering::Greater,
+        (true, true) => match in_circle(p_a, p_b, p_c, p_d) {
+            Ordering::Less => true,
+            Ordering::Greater => false,
+            Ordering::Equal => a.min(c) < b.min(d),
+        },
         (only_ac, _) => only_ac,
     };
     Some(Cut { is_ac, is_suspect: true })
@@ -159,13 +161,20 @@ mod tests {
     }
 
     #[test]
-    fn ties_go_to_the_diagonal_with_the_smallest_node() {
-        let rectangle = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.8], [0.0, 0.8]];
-        let turned = rectangle.map(|[x, y]| [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y]);
-        for corners in [rectangle, turned] {
-            assert_eq!(cut(corners, [0, 1, 2, 3]), Some(true));
-            assert_eq!(cut(corners, [9, 1, 8, 3]), Some(false));
+    fn a_rectangle_along_the_axes_is_cut_by_number_and_done_with() {
+        let rectangle = Cell::new([[0.0, 0.0], [1.0, 0.0], [1.0, 0.8], [0.0, 0.8]]);
+        for (nodes, is_ac) in [([0, 1, 2, 3], true), ([9, 1, 8, 3], false)] {
+            let cut = rectangle.cut(nodes, &Limits::new(UNIT)).expect("plain numbers do");
+            assert_eq!((cut.is_ac, cut.is_suspect), (is_ac, false));
         }
+    }
+
+    #[test]
+    fn a_tie_within_rounding_is_left_for_when_ties_are_settled() {
+        let (s, c) = 0.3f64.sin_cos();
+        let turned = [[0.0, 0.0], [c, s], [c - 0.8 * s, s + 0.8 * c], [-0.8 * s, 0.8 * c]];
+        assert!(Cell::new(turned).cut([0, 1, 2, 3], &Limits::new(UNIT)).is_none());
+        assert!(cut_exactly([0, 1, 2, 3], turned, 1.0).is_some_and(|cut| cut.is_suspect));
     }
 
     #[test]

@@ -89,8 +89,9 @@ impl Triangulation<'_> {
         Some(())
     }
 
-    /// Notes half-edges at the boundary nodes and ghosts of the lower row, or near those that own no box: the first slot of
-    /// a cell begins at its lower left corner, until it is flipped.
+    /// Notes half-edges at the boundary nodes and ghosts of the lower row, or near those that own no box.
+    ///
+    /// The first slot of a cell begins at its lower left corner, until it is flipped.
     fn note_lower_corners(&mut self, below: &Row) {
         let first_slot = |front: &[FrontEdge], col: u32| match front.get(col as usize) {
             Some(top) if top.slot != NONE => top.slot - 3,

@@ -1,7 +1,7 @@
 //! Lawson's flips until every side is Delaunay, then the ties.
 
 use super::half_edges::{Corner, Triangulation, next, prev};
-use crate::ties::must_flip;
+use crate::ties::{Flippable, Pair, settle};
 use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{Point, in_circle};
 use std::cmp::Ordering;
@@ -24,7 +24,9 @@ enum Verdict {
 }
 
 impl Triangulation<'_> {
-    /// The nodes of the two triangles at a side: its own two, then those opposite, left first; `None` where it must stay.
+    /// The nodes of the two triangles at a side, its own two, then those opposite, left first; and its twin.
+    ///
+    /// `None` where it must stay.
     #[inline(always)]
     fn quadrilateral(&self, h: u32) -> Option<([u32; 4], u32)> {
         let twin = self.twin(h)?;
@@ -59,19 +61,33 @@ impl Triangulation<'_> {
         }
     }
 
-    /// Flips every tied diagonal among the suspects that does not contain the smallest of its four nodes.
+    /// Settles the ties among the suspects.
     pub fn settle_ties(&mut self) {
-        let mut suspects = std::mem::take(&mut self.suspects);
-        while let Some(h) = suspects.pop() {
-            if self.is_dead(h) {
-                continue;
-            }
-            let Some((nodes, twin)) = self.quadrilateral(h) else { continue };
-            if must_flip(nodes, |n| self.at(n)) {
-                self.flip(h, twin);
-                suspects.extend([h, prev(h), twin, prev(twin)]);
-            }
+        let suspects = std::mem::take(&mut self.suspects);
+        settle(self, suspects.into_iter());
+    }
+}
+
+impl Flippable for Triangulation<'_> {
+    fn at(&self, node: u32) -> Point {
+        self.at(node)
+    }
+
+    fn n_triangles(&self) -> usize {
+        self.origins.len() / 3
+    }
+
+    fn pair(&self, side: u32) -> Option<Pair> {
+        if self.is_dead(side) {
+            return None;
         }
+        let (nodes, twin) = self.quadrilateral(side)?;
+        Some(Pair { nodes, triangles: [side / 3, twin / 3], twin })
+    }
+
+    fn flip(&mut self, side: u32, pair: &Pair) -> [u32; 4] {
+        self.flip(side, pair.twin);
+        [side, prev(side), pair.twin, prev(pair.twin)]
     }
 }
 

@@ -172,8 +172,8 @@ impl Triangulation<'_> {
 
     /// Replaces the diagonal `h` = a → b of the triangles (a, b, c) and (b, a, d) by c d.
     ///
-    /// Afterwards `h` is a → d, `twin` is b → c, and `next(h)` is d → c: those two sides have changed their slots. The caller
-    /// knows that both new triangles are counter-clockwise.
+    /// Afterwards `h` is a → d, `twin` is b → c, and `next(h)` is d → c: those two sides have changed their slots. The
+    /// caller knows that both new triangles are counter-clockwise.
     pub fn flip(&mut self, h: u32, twin: u32) {
         let (h_next, twin_next) = (next(h), next(twin));
         let (c, d) = (self.origin(prev(h)), self.origin(prev(twin)));

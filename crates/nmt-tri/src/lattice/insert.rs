@@ -100,8 +100,8 @@ impl Triangulation<'_> {
         }
     }
 
-    /// Walks from the triangle of `from` towards `p`; `None` where the way leads out through the border: triangles cover
-    /// a band about the boundary alone.
+    /// Walks from the triangle of `from` towards `p`; `None` where the way leads out through the border: where material
+    /// is thin, triangles cover a band about the boundary alone.
     fn walk(&self, from: u32, p: Point) -> Option<Found> {
         let mut entered = from;
         for _ in 0..MOST_STEPS {

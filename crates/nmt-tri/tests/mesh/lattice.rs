@@ -1,5 +1,5 @@
-//! The way by the lattice against the general way: the same triangles, whatever the cloud, and really taken for ordinary
-//! ones.
+//! The way by the lattice against the general way: the same triangles, whatever the cloud; and it is really taken for
+//! ordinary ones.
 
 use crate::sections::{Shape, any_density, any_shape, cloud, params};
 use nmt_cloud::{Census, ClearanceUnit, Cloud, CloudParams, Section, generate, generate_with};
@@ -84,7 +84,7 @@ proptest! {
         let more = (n as f64 * ratio) as usize;
         let nodes = if is_tall { [n, more] } else { [more, n] };
         let params = CloudParams { clearance, edge_clearance, node_clearance, ..params(nodes, irregularity) };
-        // Where clearances leave nothing there is no cloud, where they leave little the lattice is not worth its ghosts.
+        // Where clearances leave nothing there is no cloud, where they leave little it is not worth its ghosts.
         let Ok(cloud) = generate(&shape.section(1.0), &params) else { return Ok(()) };
         way(&cloud);
     }
