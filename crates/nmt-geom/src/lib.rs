@@ -43,6 +43,6 @@ pub use error::GeomError;
 pub use ids::{EdgeId, LoopId, NodeId, SubdomainId, TriId};
 pub use locate::{Location, Locator};
 pub use point::Point;
-pub use predicates::side;
+pub use predicates::{in_circle, side};
 pub use region::{IndexedRegion, Region, RegionFault, overlap};
 pub use segment_index::SegmentIndex;

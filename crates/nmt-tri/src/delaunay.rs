@@ -55,7 +55,7 @@ fn triangulate(cloud: &Cloud, constraints: Vec<[usize; 2]>) -> Result<Triangles,
 }
 
 /// A power of two that brings `size` near 1: scaling by it is exact, so that it changes no triangle.
-fn power_of_two_near(size: f64) -> f64 {
+pub(crate) fn power_of_two_near(size: f64) -> f64 {
     let exponent = size.log2().round();
     if exponent.is_finite() { (-exponent.clamp(-1000.0, 1000.0)).exp2() } else { 1.0 }
 }

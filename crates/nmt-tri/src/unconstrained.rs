@@ -4,8 +4,8 @@ use crate::complete::complete;
 use crate::delaunay::{NO_TRIANGLE, Triangles, plain};
 use crate::eliminate::{Cause, Judge};
 use crate::error::MeshError;
-use crate::mesh::smallest_first;
-use crate::ties::settle;
+use crate::order::in_order;
+use crate::ties::{Placed, settle};
 use nmt_cloud::Cloud;
 use nmt_geom::NodeId;
 
@@ -73,8 +73,7 @@ pub struct Stages {
 /// # Errors
 /// [`MeshError`] where two nodes coincide, or a segment of the real boundary stays bare although completion is asked for.
 pub fn stages(cloud: &Cloud, elimination: &Elimination) -> Result<Stages, MeshError> {
-    let mut all = plain(cloud)?;
-    settle(cloud.xy(), &mut all);
+    let all = settled(cloud, plain(cloud)?);
     let mut census = MeshCensus { delaunay: all.nodes.len(), ..MeshCensus::default() };
     let judge = Judge::new(cloud);
     let mut kept = Vec::with_capacity(all.nodes.len());
@@ -86,24 +85,28 @@ pub fn stages(cloud: &Cloud, elimination: &Elimination) -> Result<Stages, MeshEr
             Some(Cause::Tiny) => census.tiny += 1,
         }
     }
-    let eliminated = in_order(&kept);
+    let eliminated = sorted(cloud, &kept);
     let mut completed = eliminated.clone();
     if elimination.complete {
         let filled = complete(cloud, kept)?;
         (census.crossing, census.completed) = (filled.taken, filled.added);
         if filled.added > 0 {
-            let mut triangles = with_neighbours(filled.triangles);
-            settle(cloud.xy(), &mut triangles);
-            completed = in_order(&triangles.nodes);
+            completed = sorted(cloud, &settled(cloud, with_neighbours(filled.triangles)).nodes);
         }
     }
-    Ok(Stages { delaunay: in_order(&all.nodes), eliminated, completed, census })
+    Ok(Stages { delaunay: sorted(cloud, &all.nodes), eliminated, completed, census })
 }
 
-fn in_order(triangles: &[[u32; 3]]) -> Vec<[NodeId; 3]> {
-    let mut ordered: Vec<[NodeId; 3]> = triangles.iter().map(|nodes| smallest_first(*nodes).map(NodeId)).collect();
-    ordered.sort_unstable();
-    ordered
+/// The triangles with ties settled by node number.
+fn settled(cloud: &Cloud, triangles: Triangles) -> Triangles {
+    let n_sides = 3 * triangles.nodes.len() as u32;
+    let mut placed = Placed { xy: cloud.xy(), triangles };
+    settle(&mut placed, 0..n_sides);
+    placed.triangles
+}
+
+fn sorted(cloud: &Cloud, triangles: &[[u32; 3]]) -> Vec<[NodeId; 3]> {
+    in_order(cloud.n_nodes(), || triangles.iter().copied())
 }
 
 /// Finds the triangle beyond each side.

@@ -4,6 +4,7 @@
 mod delaunay;
 mod faults;
 mod invariants;
+mod lattice;
 mod locate;
 mod sections;
 mod smoothing;
