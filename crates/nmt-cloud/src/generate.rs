@@ -16,6 +16,10 @@ pub const MAX_GRID_POINTS: f64 = 1.0e8;
 /// factorisation.
 pub const BYTES_PER_GRID_POINT: f64 = 1.0e4;
 
+/// Room about the boundary within which a displaced node is looked at, as a fraction of the size: above rounding, and above
+/// the slack of the clearances.
+const EXPOSED_ROOM_REL: f64 = 1.0e-9;
+
 /// Draws a node may take until its displaced place is clear of the boundary; then it stays.
 const MAX_DRAWS: usize = 8;
 
@@ -80,8 +84,10 @@ pub fn generate_with(
         // Only sites this near to the boundary can be moved too close to it, or across it.
         let [h_x, h_y] = lattice.spacing();
         let [s_x, s_y] = clearance.stretch;
-        let reach = clearance.reach() + params.irregularity * (s_x * h_x).hypot(s_y * h_y);
-        let exposed = SiteSet::near(&lattice, &boundary, &clearance, reach * (1.0 + 1e-9));
+        let moves = params.irregularity * (s_x * h_x).hypot(s_y * h_y);
+        // Where no clearance is asked for, a hair of it decides whether a node crosses the boundary.
+        let reach = clearance.reach().max(0.0) + moves + EXPOSED_ROOM_REL * s_x.max(s_y) * boundary.envelope().size();
+        let exposed = SiteSet::near(&lattice, &boundary, &clearance, reach * (1.0 + EXPOSED_ROOM_REL));
         let is_exposed = |k: usize| exposed.contains(sites[k]);
         displace(&mut xy, &boundary, &clearance, lattice.spacing(), params.irregularity, is_exposed, random);
     }
