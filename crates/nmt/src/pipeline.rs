@@ -186,7 +186,7 @@ pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer
             MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
         };
         let (mut mesh, mut census) = triangulate(cloud).map_err(failed)?;
-        let before = quality(&mesh).filter(|_| *sweeps > 0);
+        let before = (*sweeps > 0).then(|| quality(&mesh)).flatten();
         if before.is_some() {
             (mesh, census) = triangulate(smooth(&mesh, *sweeps)).map_err(failed)?;
         }
