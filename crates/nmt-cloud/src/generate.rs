@@ -64,12 +64,15 @@ pub fn generate_with(
         prepare(section, params, random)?;
     if let Some(fault) = boundary.faults().first() {
         let at = place_of(fault, &boundary);
-        return Err(CloudError::BoundaryCrosses { at, remedy: density_that_does_not_cross(section, params) });
+        return Err(CloudError::BoundaryCrosses {
+            at,
+            remedy: density_that_does_not_cross(section, params, boundary.xy().len()),
+        });
     }
     let sieve = Sieve::new(&lattice, &boundary, &clearance);
     let census = sieve.census();
     if census.kept == 0 {
-        return Err(CloudError::NoInterior { remedy: density_with_interior(section, params) });
+        return Err(CloudError::NoInterior { remedy: density_with_interior(section, params, boundary.xy().len()) });
     }
     let n_boundary = boundary.xy().len();
     let mut xy = Vec::with_capacity(n_boundary + census.kept);
@@ -271,12 +274,15 @@ pub(crate) fn place_of(fault: &RegionFault, boundary: &RealBoundary) -> Point {
 /// Densities tried for a remedy: each this much finer than the one before.
 const FINER: f64 = 1.25;
 
-/// The first finer density that `does`, as advice; up to 10⁶ grid points, so that an error costs no more than a cloud.
-fn advise(params: &CloudParams, does: impl Fn(&CloudParams) -> bool) -> Option<[usize; 2]> {
+/// Grid points and boundary nodes, at most, of a cloud that is tried for a remedy: an error shall cost no more than a cloud.
+const MOST_TRIED: f64 = 1.0e6;
+
+/// The first finer density that `does`, as advice; `n_boundary` nodes are on the boundary at the density that does not.
+fn advise(params: &CloudParams, n_boundary: usize, does: impl Fn(&CloudParams) -> bool) -> Option<[usize; 2]> {
     let mut factor = FINER;
     loop {
         let nodes = params.nodes.map(|n| (n as f64 * factor).ceil() as usize);
-        if nodes[0] as f64 * nodes[1] as f64 > 1e6 {
+        if nodes[0] as f64 * nodes[1] as f64 > MOST_TRIED || n_boundary as f64 * factor > MOST_TRIED {
             return None;
         }
         let hole_nodes =
@@ -294,27 +300,27 @@ fn prepare_seeded(section: &Section, params: &CloudParams) -> Result<Prepared, C
     prepare(section, params, &mut |node, draw| displacements.draw(node, draw))
 }
 
-fn density_that_does_not_cross(section: &Section, params: &CloudParams) -> String {
+fn density_that_does_not_cross(section: &Section, params: &CloudParams, n_boundary: usize) -> String {
     let does = |finer: &CloudParams| {
         prepare_seeded(section, finer).is_ok_and(|prepared| prepared.boundary.boundary.faults().is_empty())
     };
-    match advise(params, does) {
+    match advise(params, n_boundary, does) {
         Some([n_x, n_y]) => format!("nodes = [{n_x}, {n_y}] would do"),
         None => "give edges with `nodes` of their own more of them, or keep the curves further apart".into(),
     }
 }
 
-fn density_with_interior(section: &Section, params: &CloudParams) -> String {
+fn density_with_interior(section: &Section, params: &CloudParams, n_boundary: usize) -> String {
     let does = |finer: &CloudParams| {
         prepare_seeded(section, finer).is_ok_and(|Prepared { lattice, boundary, clearance }| {
             boundary.boundary.faults().is_empty()
                 && Sieve::new(&lattice, &boundary.boundary, &clearance).census().kept > 0
         })
     };
-    match advise(params, does) {
+    match advise(params, n_boundary, does) {
         Some([n_x, n_y]) => format!("nodes = [{n_x}, {n_y}] would give some"),
         None => {
-            "a grid of 10⁶ points in this proportion gives none either: choose more nodes across the thin parts".into()
+            "densities tried up to 10⁶ nodes in this proportion give none either: choose more nodes across the thin parts".into()
         }
     }
 }

@@ -26,6 +26,14 @@ pub struct CloudQuality {
 /// as far as these.
 const FIRST_NEIGHBOURS: usize = 18;
 
+/// A node with more neighbours than this about it stands among much denser ones, as along an edge with a count of its own: its
+/// cell is looked at only where none has been nearby.
+const DENSE: usize = 256;
+
+/// Nearby is this fraction of the distance that the last such cell reached: the distance from the nearest node changes no faster
+/// than the place, so that no circle is missed by more.
+const NEARBY: f64 = 0.01;
+
 /// How much farther neighbours are looked for where a cell is not closed yet.
 const FARTHER: f64 = 1.6;
 
@@ -34,8 +42,9 @@ const BOUND_REL: f64 = 1.0e-9;
 
 /// The quality of a cloud of at least two nodes; `None` for fewer.
 ///
-/// Exact but for two simplifications: the largest empty circle is looked for about the Voronoi vertices that lie in the
-/// section and about the middles of the boundary's segments. O(n): a tenth of a microsecond for a node amid others of its
+/// Exact but for three simplifications: the largest empty circle is looked for about the Voronoi vertices that lie in the
+/// section and about the middles of the boundary's segments, and where an edge has hundreds of nodes to a spacing of the
+/// interior, not about all of them, to one per cent. O(n): a tenth of a microsecond for a node amid others of its
 /// lattice, one microsecond for others.
 ///
 /// ```
@@ -55,7 +64,14 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
     }
     let nearest = Nearest::new(xy);
     let boundary = cloud.boundary();
-    let mut cells = Cells { nearest: &nearest, boundary, near: Vec::new(), corners: Vec::new(), next: Vec::new() };
+    let mut cells = Cells {
+        nearest: &nearest,
+        boundary,
+        near: Vec::new(),
+        corners: Vec::new(),
+        next: Vec::new(),
+        last_dense: None,
+    };
     let inner = Inner::of(cloud);
     let (mut distances, mut fill) = (Distances::default(), 0.0f64);
     for (node, &p) in xy.iter().enumerate() {
@@ -240,6 +256,7 @@ struct Cells<'a> {
     near: Vec<(f64, Point)>, // distance², offset from the node; in order of distance
     corners: Vec<Point>,     // of the cell, offsets from the node, counter-clockwise
     next: Vec<Point>,
+    last_dense: Option<(Point, f64)>, // the last node among many that was looked at, and how far
 }
 
 impl Cells<'_> {
@@ -257,8 +274,15 @@ impl Cells<'_> {
             let right = if all { f64::INFINITY } else { 0.5 * radius };
             let open = self.corners.iter().any(|&c| dot(c, c) > right * right && self.is_inside(p, c));
             if open || (self.near.is_empty() && !all) {
+                let looked_at = self.last_dense.is_some_and(|(q, reach)| distance(p, q) < NEARBY * reach);
+                if self.near.len() > DENSE && looked_at {
+                    return self.near.first().map(|(d2, _)| d2.sqrt());
+                }
                 radius *= FARTHER;
                 continue;
+            }
+            if self.near.len() > DENSE {
+                self.last_dense = Some((p, radius));
             }
             for k in 0..self.corners.len() {
                 let c = self.corners[k];

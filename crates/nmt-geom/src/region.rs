@@ -290,7 +290,9 @@ pub fn overlap(a: &IndexedRegion, b: &IndexedRegion, tolerance: f64) -> Option<P
     // or both are the same: a point beside each side, on its inner side, decides.
     let sides_of_a = a.sides_in(&b.envelope().grown([tolerance; 2]));
     let sides_of_b = b.sides_in(&a.envelope().grown([tolerance; 2]));
-    let in_both = |p: &Point| a.holds_deep(*p, tolerance) && b.holds_deep(*p, tolerance);
+    // The smaller region first: it refuses most points, and at less cost.
+    let (small, large) = if a.index.len() <= b.index.len() { (a, b) } else { (b, a) };
+    let in_both = |p: &Point| small.holds_deep(*p, tolerance) && large.holds_deep(*p, tolerance);
     let crossings = proper_crossings(a, &sides_of_b, tolerance);
     crossings
         .into_iter()

@@ -49,7 +49,12 @@ impl Curve {
 
     /// The polyline, or `None` where it has too many points.
     fn polyline(&self, tolerance: f64) -> Option<Vec<Point>> {
-        if let Self::Arc { radius, sweep, .. } = self {
+        let circular = match self {
+            Self::Arc { radius, sweep, .. } => Some((*radius, *sweep)),
+            Self::Ellipse { semi_axes: [a, b], .. } if a == b => Some((*a, std::f64::consts::TAU)),
+            _ => None,
+        };
+        if let Some((radius, sweep)) = circular {
             // Sagitta of a chord over the angle 2a: r(1 − cos a) = 2r·sin²(a/2).
             let half = 2.0 * (tolerance / (2.0 * radius.abs())).sqrt().min(0.5).asin();
             let pieces = (sweep.abs() / (2.0 * half)).ceil().max(1.0);
