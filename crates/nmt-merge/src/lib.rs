@@ -8,8 +8,7 @@
 //! ```
 //!
 //! [`common_edges`] finds them for every pair of subdomains: the whole of two edges, a part of them, or the boundary of
-//! a hole that another subdomain fills. In this version the edges must be straight lines; a common arc or curve is not
-//! reported.
+//! a hole that another subdomain fills; straight or curved, whatever form each side gives its curve in.
 //!
 //! ```
 //! use nmt_cloud::{CloudParams, Section, generate};
@@ -30,7 +29,9 @@
 //! # Ok::<(), nmt_cloud::CloudError>(())
 //! ```
 
+mod coincide;
 mod common_edges;
 mod overlap;
+mod track;
 
 pub use common_edges::{CommonEdge, Side, common_edges};
