@@ -30,13 +30,6 @@ pub(crate) struct Part {
     pub u: [[f64; 2]; 2],
 }
 
-impl Part {
-    /// True where it leads once around, back to where it begins.
-    pub fn is_closed(&self) -> bool {
-        self.from == self.to
-    }
-}
-
 /// What two points may differ by and still be one: 1e-9 of the size of the whole problem.
 pub(crate) fn same_point(sections: &[&Section]) -> f64 {
     let envelope = sections.iter().fold(Bbox::EMPTY, |all, section| all.union(section.contour.envelope()));
