@@ -1,10 +1,10 @@
 //! Nodes at vertices and on edges, joined to the real boundary; paper, Secs 4.1–4.2.
 
 use crate::error::CloudError;
-use crate::section::{CloudParams, Section};
+use crate::section::{CloudParams, GivenNode, Section};
 use nmt_curve::{ArcTable, Curve, Division, EdgeNodes, divide_by_chords, node_count};
 use nmt_geom::point::{along, sub};
-use nmt_geom::{BoundaryLoop, EdgeId, NodeId, Point, RealBoundary};
+use nmt_geom::{Bbox, BoundaryLoop, EdgeId, NodeId, Point, RealBoundary};
 
 /// The real boundary, and where its nodes lie on the outline.
 pub(crate) struct BoundaryNodes {
@@ -29,8 +29,30 @@ pub struct Closing {
     pub closing_error: f64,
 }
 
-/// Places the boundary nodes: every vertex, then the nodes of every edge by its rule, each displaced along its edge by
-/// ±Amp of the shorter of its two segments where the cloud is irregular.
+/// Segments that each edge is divided into by its own count, (2) \[D4\] or its `nodes`; by [`EdgeId`].
+///
+/// A division by chords may make fewer, and an edge whose nodes are given as many as these say.
+pub fn segment_counts(section: &Section, params: &CloudParams) -> Vec<usize> {
+    let rate_of = |nodes: [usize; 2], envelope: Bbox| {
+        let [width, height] = [envelope.width(), envelope.height()];
+        [nodes[0] as f64 / width, nodes[1] as f64 / height]
+    };
+    let main_rate = rate_of(params.nodes, section.contour.envelope());
+    let mut counts = Vec::new();
+    for (k, outline) in section.loops().enumerate() {
+        let own = k.checked_sub(1).and_then(|hole| params.hole_nodes.get(hole).copied().flatten());
+        let rate = own.map_or(main_rate, |nodes| rate_of(nodes, outline.envelope()));
+        for edge in &outline.edges {
+            // A closed edge of n nodes has n segments, an open one n − 1.
+            let n_nodes = edge.nodes.unwrap_or_else(|| node_count(&edge.curve, rate));
+            counts.push(if edge.curve.is_closed() { n_nodes.max(3) } else { n_nodes.max(2) - 1 });
+        }
+    }
+    counts
+}
+
+/// Places the boundary nodes: every vertex, then the nodes of every edge by its rule or as they are given, each that is
+/// not fixed displaced along its edge by ±Amp of the shorter of its two segments where the cloud is irregular.
 ///
 /// `random` gives 2r − 1 and 2r′ − 1 of (10) for a node and a draw.
 pub(crate) fn boundary_nodes(
@@ -38,30 +60,29 @@ pub(crate) fn boundary_nodes(
     params: &CloudParams,
     random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) -> Result<BoundaryNodes, CloudError> {
-    let envelope = section.contour.envelope();
-    let rate_of = |nodes: [usize; 2], width: f64, height: f64| [nodes[0] as f64 / width, nodes[1] as f64 / height];
-    let main_rate = rate_of(params.nodes, envelope.width(), envelope.height());
+    let counts = segment_counts(section, params);
     let mut draft = Draft::at_vertices(section);
     let n_vertices = draft.xy.len();
     let (mut first_vertex, mut first_edge) = (0, 0);
-    for (k, outline) in section.loops().enumerate() {
-        let own = k.checked_sub(1).and_then(|hole| params.hole_nodes.get(hole).copied().flatten());
-        let rate = own.map_or(main_rate, |nodes| {
-            let own_envelope = outline.envelope();
-            rate_of(nodes, own_envelope.width(), own_envelope.height())
-        });
+    for outline in section.loops() {
         let mut ring = BoundaryLoop::default();
         for (e, edge) in outline.edges.iter().enumerate() {
             let failed = |source| CloudError::Edge { edge: first_edge + e, source };
-            // A closed edge of n nodes has n segments, an open one n − 1.
-            let n_nodes = edge.nodes.unwrap_or_else(|| node_count(&edge.curve, rate));
-            let n_segments = if edge.curve.is_closed() { n_nodes.max(3) } else { n_nodes.max(2) - 1 };
-            let (places, closing) = Places::new(&edge.curve, n_segments, params.division).map_err(failed)?;
+            let given = params.edge_nodes.get(first_edge + e).and_then(Option::as_deref);
+            let (places, closing) = match given {
+                Some(nodes) => (Places::given(nodes), None),
+                None => Places::new(&edge.curve, counts[first_edge + e], params.division).map_err(failed)?,
+            };
             let edge_id = EdgeId::of(first_edge + e);
             draft.closings.extend(closing.map(|closing| Closing { edge: edge_id, ..closing }));
             let path = EdgePath::new(&edge.curve).map_err(failed)?;
             draft.begin_edge(&mut ring, NodeId::of(first_vertex + e), edge_id);
             for s in 1..places.n_segments() {
+                let fixed = given.and_then(|nodes| nodes.get(s - 1)).and_then(|node| Some((node.fraction, node.at?)));
+                if let Some((fraction, at)) = fixed {
+                    draft.push_at(&mut ring, at, fraction, edge_id);
+                    continue;
+                }
                 let slide = match params.irregularity {
                     0.0 => 0.0,
                     amplitude => amplitude * random(draft.xy.len(), 0)[0],
@@ -151,9 +172,14 @@ impl Draft {
 
     /// Adds a node of an edge.
     fn push(&mut self, ring: &mut BoundaryLoop, path: &EdgePath, fraction: f64, edge: EdgeId) {
+        self.push_at(ring, path.point_at(fraction), fraction, edge);
+    }
+
+    /// Adds a node of an edge where it is told to lie.
+    fn push_at(&mut self, ring: &mut BoundaryLoop, at: Point, fraction: f64, edge: EdgeId) {
         ring.nodes.push(NodeId::of(self.xy.len()));
         ring.edges.push(edge);
-        self.xy.push(path.point_at(fraction));
+        self.xy.push(at);
         self.fractions.push(fraction);
     }
 }
@@ -183,6 +209,12 @@ impl Places {
             fractions.push(1.0);
         }
         Ok((Self::Listed(fractions), Some(Closing { edge: EdgeId(0), chord, left_out, closing_error })))
+    }
+
+    /// The places of nodes that are given.
+    fn given(nodes: &[GivenNode]) -> Self {
+        let inner = nodes.iter().map(|node| node.fraction);
+        Self::Listed(std::iter::once(0.0).chain(inner).chain([1.0]).collect())
     }
 
     fn n_segments(&self) -> usize {

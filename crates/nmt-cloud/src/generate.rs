@@ -105,7 +105,7 @@ pub fn generate_with(
 /// Edge nodes slide along their edges by ±`irregularity` of the shorter of their two segments, in arc length; interior
 /// nodes move by up to `irregularity` of h_x and h_y to a place that is inside and clear of the boundary, drawn up to 8
 /// times, else they stay. Vertices stay. An interior node that the slid boundary has come too near to goes, and is counted
-/// under its cause in the census. `section` must be the one that the cloud was generated from.
+/// under its cause in the census. Nodes that an edge was given slide like the others. `section` must be the one that the cloud was generated from.
 ///
 /// # Errors
 /// [`CloudError::Parameter`] where `irregularity` is not in [0, 0.5), [`CloudError::OtherSection`] where the cloud's
@@ -287,7 +287,9 @@ fn advise(params: &CloudParams, n_boundary: usize, does: impl Fn(&CloudParams) -
         }
         let hole_nodes =
             params.hole_nodes.iter().map(|own| own.map(|n| n.map(|n| (n as f64 * factor).ceil() as usize)));
-        let finer = CloudParams { nodes, hole_nodes: hole_nodes.collect(), ..params.clone() };
+        // Nodes that are given belong to the density they were made for.
+        let edge_nodes = Vec::new();
+        let finer = CloudParams { nodes, hole_nodes: hole_nodes.collect(), edge_nodes, ..params.clone() };
         if does(&finer) {
             return Some(nodes);
         }

@@ -34,7 +34,7 @@ mod nearest;
 mod quality;
 mod section;
 
-pub use boundary::Closing;
+pub use boundary::{Closing, segment_counts};
 pub use census::Census;
 pub use clearance::Clearance;
 pub use cloud::{Cloud, NodeEdges, NodeKind};
@@ -44,4 +44,4 @@ pub use irregular::Displacements;
 pub use lattice::Lattice;
 pub use nearest::{Nearest, Scratch, TIE_REL};
 pub use quality::{CloudQuality, quality};
-pub use section::{ClearanceUnit, CloudParams, DEFAULT_SEED, Section};
+pub use section::{ClearanceUnit, CloudParams, DEFAULT_SEED, GivenNode, Section};

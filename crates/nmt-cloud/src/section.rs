@@ -2,6 +2,7 @@
 
 use crate::error::CloudError;
 use nmt_curve::{Division, Outline};
+use nmt_geom::Point;
 
 /// A main contour with holes; checked outlines, the holes inside and apart.
 #[derive(Clone, Debug)]
@@ -54,6 +55,15 @@ impl ClearanceUnit {
     }
 }
 
+/// A node that an edge is given instead of those of its own division.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenNode {
+    /// Arc length from the edge's first vertex as a fraction of the edge, in (0, 1).
+    pub fraction: f64,
+    /// Where it lies to the bit; it does not slide. `None`: at its fraction of the edge, from where it slides.
+    pub at: Option<Point>,
+}
+
 /// Density and irregularity of a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudParams {
@@ -61,6 +71,9 @@ pub struct CloudParams {
     pub nodes: [usize; 2],
     /// Densities of each hole relative to its own envelope; by default the contour's N_x/W and N_y/H hold.
     pub hole_nodes: Vec<Option<[usize; 2]>>,
+    /// Nodes between the ends of an edge, in order along it, by [`nmt_geom::EdgeId`]; by default, and where it is `None`,
+    /// an edge is divided by its own count.
+    pub edge_nodes: Vec<Option<Vec<GivenNode>>>,
     /// How nodes are spread along curved edges \[D3\]; by arc length by default.
     pub division: Division,
     /// Amp of (10), in [0, 0.5); 0, the default, is a regular cloud.
@@ -83,6 +96,7 @@ impl Default for CloudParams {
         Self {
             nodes: [11, 11],
             hole_nodes: Vec::new(),
+            edge_nodes: Vec::new(),
             division: Division::Arc,
             irregularity: 0.0,
             seed: DEFAULT_SEED,
@@ -101,6 +115,16 @@ impl CloudParams {
         for &n in self.nodes.iter().chain(own) {
             if n < 2 {
                 return Err(CloudError::Parameter { parameter: "nodes", value: n as f64, range: "2, 3, …" });
+            }
+        }
+        for given in self.edge_nodes.iter().flatten() {
+            let mut before = 0.0;
+            for &GivenNode { fraction, .. } in given {
+                if !(before < fraction && fraction < 1.0) {
+                    let range = "(0, 1), rising along the edge";
+                    return Err(CloudError::Parameter { parameter: "fraction", value: fraction, range });
+                }
+                before = fraction;
             }
         }
         let ranges = [

@@ -124,6 +124,21 @@ impl ArcTable {
         let high = Sample { at: leaf.to, value: before + leaf.length - s };
         monotone_root(excess, low, high, self.tolerance).at
     }
+
+    /// Arc length from the first point to fraction `u` of the parameter: the inverse of [`Self::parameter_at`].
+    pub fn length_to(&self, u: f64) -> f64 {
+        if u <= 0.0 || u.is_nan() {
+            return 0.0;
+        }
+        if u >= 1.0 {
+            return self.length;
+        }
+        let number = self.leaves.partition_point(|stretch| stretch.leaf.from <= u);
+        let Some(stretch) = number.checked_sub(1).and_then(|i| self.leaves.get(i)) else { return u * self.length };
+        let from = End { u: stretch.leaf.from, point: stretch.leaf.start };
+        let to = End { u, point: self.curve.point(u) };
+        stretch.before + ChordSums::new(&self.curve, from, to).length()
+    }
 }
 
 fn diverges(length: f64, intervals: usize, error: f64) -> CurveError {
@@ -152,6 +167,18 @@ mod tests {
         let table = ArcTable::new(&graph("x^2", 0.0, 1.0)).unwrap();
         assert_eq!((table.parameter_at(-1.0), table.parameter_at(9.0)), (0.0, 1.0));
         assert_eq!((table.parameter_at(f64::NAN), table.point_at(table.length())), (0.0, [1.0, 1.0]));
+    }
+
+    #[test]
+    fn lengths_and_parameters_are_inverse() {
+        for curve in [graph("sqrt(1-x^2)", 1.0, -1.0), graph("sin(5*x)", 0.0, 2.0), graph("2*x", 0.0, 1.0)] {
+            let table = ArcTable::new(&curve).unwrap();
+            for k in 0..=200 {
+                let s = table.length() * f64::from(k) / 200.0;
+                assert!((table.length_to(table.parameter_at(s)) - s).abs() < 1e-10 * table.length()); // as above
+            }
+            assert_eq!((table.length_to(-1.0), table.length_to(2.0)), (0.0, table.length()));
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Common edges of adjacent subdomains.
+//! Common edges of adjacent subdomains, nodes that both sides share, and one mesh of all.
 //!
 //! ```text
 //!   ┌───────────┐\
@@ -8,8 +8,9 @@
 //! ```
 //!
 //! [`common_edges`] finds them for every pair of subdomains: the whole of two edges, a part of them, or the boundary of
-//! a hole that another subdomain fills. In this version the edges must be straight lines; a common arc or curve is not
-//! reported.
+//! a hole that another subdomain fills; straight or curved, whatever form each side gives its curve in.
+//! [`conform`] makes nodes for both sides of a common edge before the clouds are generated, and [`weld`] joins the meshes of
+//! such clouds to one.
 //!
 //! ```
 //! use nmt_cloud::{CloudParams, Section, generate};
@@ -30,7 +31,15 @@
 //! # Ok::<(), nmt_cloud::CloudError>(())
 //! ```
 
+mod coincide;
 mod common_edges;
+mod conform;
+mod error;
 mod overlap;
+mod track;
+mod weld;
 
 pub use common_edges::{CommonEdge, Side, common_edges};
+pub use conform::{EdgeNodes, Planned, conform};
+pub use error::MergeError;
+pub use weld::{Interface, MeshSide, OuterSegment, Welded, weld, weld_at};

@@ -6,6 +6,7 @@
 use crate::error::NmtError;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
+use nmt_merge::{EdgeNodes, Planned, conform};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
 
@@ -94,9 +95,11 @@ pub struct SolvedPart {
 pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPart>, NmtError> {
     let mut parts = Vec::with_capacity(problem.subdomains.len());
     let mut faults = Vec::new();
+    let shared = shared_nodes(problem);
     for (k, subdomain) in problem.subdomains.iter().enumerate() {
         let section = section(subdomain);
-        match generate(&section, &cloud_params(problem, subdomain)) {
+        let edge_nodes = shared.get(k).cloned().unwrap_or_default();
+        match generate(&section, &CloudParams { edge_nodes, ..cloud_params(problem, subdomain) }) {
             Ok(cloud) => parts.push(CloudPart {
                 name: subdomain.name.clone(),
                 edge_names: section.edge_names(),
@@ -112,6 +115,23 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
     if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
 }
 
+/// Nodes that both sides of the common edges of conforming subdomains have; empty where there are none.
+fn shared_nodes(problem: &Problem) -> Vec<EdgeNodes> {
+    if problem.subdomains.len() < 2 || !problem.subdomains.iter().any(|subdomain| subdomain.conforming) {
+        return Vec::new();
+    }
+    let sections: Vec<Section> = problem.subdomains.iter().map(section).collect();
+    let params: Vec<CloudParams> = problem.subdomains.iter().map(|s| cloud_params(problem, s)).collect();
+    let planned = |(k, subdomain): (usize, &Subdomain)| Planned {
+        section: &sections[k],
+        params: &params[k],
+        conforming: subdomain.conforming,
+    };
+    let planned: Vec<Planned> = problem.subdomains.iter().enumerate().map(planned).collect();
+    // An edge that has no length is told, with its place, when its cloud is generated.
+    conform(&planned).unwrap_or_default()
+}
+
 /// The outlines of a subdomain, as its cloud is made from them.
 pub fn section(subdomain: &Subdomain) -> Section {
     Section {
@@ -125,6 +145,7 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
     CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
+        edge_nodes: Vec::new(),
         division: subdomain.division,
         irregularity: subdomain.irregularity,
         seed: problem.solve.seed,

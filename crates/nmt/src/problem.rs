@@ -73,6 +73,7 @@ fn subdomain(draft: SubdomainDraft) -> Option<Subdomain> {
         clearance: draft.clearance,
         edge_clearance: draft.edge_clearance,
         node_clearance: draft.node_clearance,
+        conforming: draft.conforming,
         edge_places: edge_places(&contour),
         contour_place: contour.place.into(),
         contour: contour.outline,

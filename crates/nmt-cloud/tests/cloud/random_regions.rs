@@ -113,6 +113,7 @@ proptest! {
         let hole_nodes = vec![];
         let params = CloudParams {
             nodes, irregularity, seed, clearance, division, edge_clearance, node_clearance, hole_nodes,
+            edge_nodes: Vec::new(),
         };
         match generate(&section, &params) {
             Ok(cloud) => {

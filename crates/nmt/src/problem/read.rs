@@ -36,6 +36,7 @@ pub(super) struct SubdomainDraft {
     pub(super) clearance: ClearanceUnit,
     pub(super) edge_clearance: f64,
     pub(super) node_clearance: f64,
+    pub(super) conforming: bool,
     pub(super) contour: Option<Shape>,
     pub(super) holes: Vec<HoleDraft>,
     pub(super) place: Range<usize>,
@@ -166,6 +167,7 @@ fn subdomain(
     let clearance = table.get("clearance");
     let clearance =
         clearance.and_then(|value| reader.text(&item, "clearance", value, "\"scaled\"", limits::clearance_unit));
+    let conforming = table.get("conforming").and_then(|value| reader.boolean(&item, "conforming", value));
     let contour = shape::read(reader, &table, "");
     let tables = tables(reader, &table, "hole", "[[subdomain.hole]]");
     let holes: Vec<_> = tables.into_iter().enumerate().map(|(k, table)| hole(reader, table, k + 1)).collect();
@@ -194,6 +196,7 @@ fn subdomain(
         clearance: clearance.unwrap_or_default(),
         edge_clearance,
         node_clearance,
+        conforming: conforming.unwrap_or_default(),
         contour,
         holes,
         place: table.place,

@@ -44,6 +44,8 @@ pub struct Subdomain {
     pub edge_clearance: f64,
     /// Least distance of an interior node from a boundary node, in spacings \[D7\]; ½ by default.
     pub node_clearance: f64,
+    /// True where its nodes on common edges shall be those of its neighbours too; false by default.
+    pub conforming: bool,
     /// The main contour, either orientation.
     pub contour: Outline,
     /// The holes in the order of the file.

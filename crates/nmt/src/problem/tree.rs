@@ -51,6 +51,7 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "clearance",
     "edge_clearance",
     "node_clearance",
+    "conforming",
     "outline",
     "circle",
     "ellipse",
