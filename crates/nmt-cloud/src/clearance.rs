@@ -4,7 +4,7 @@ use crate::census::Census;
 use crate::lattice::Lattice;
 use crate::section::ClearanceUnit;
 use nmt_geom::point::sub;
-use nmt_geom::tol::CLEARANCE_SLACK_REL;
+use nmt_geom::tol::{CLEARANCE_SLACK_REL, SAME_POINT_REL};
 use nmt_geom::{Bbox, LoopId, Point, RealBoundary, SegmentIndex, segment, side};
 use std::cmp::Ordering;
 
@@ -33,7 +33,10 @@ impl Clearance {
             ClearanceUnit::Scaled => spacing.map(|own| h / own),
         };
         let slack = CLEARANCE_SLACK_REL * size * stretch[0].max(stretch[1]);
-        Self { segment: edge * h - slack, node: node * h - slack, stretch }
+        // Even without clearance a node is no point of the boundary.
+        let least = SAME_POINT_REL * size;
+        let limit = |fraction: f64| (fraction * h - slack).max(least);
+        Self { segment: limit(edge), node: limit(node), stretch }
     }
 
     /// The larger of the two.

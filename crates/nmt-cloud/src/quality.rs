@@ -42,9 +42,9 @@ const BOUND_REL: f64 = 1.0e-9;
 
 /// The quality of a cloud of at least two nodes; `None` for fewer.
 ///
-/// Exact but for three simplifications: the largest empty circle is looked for about the Voronoi vertices that lie in the
-/// section and about the middles of the boundary's segments, and where an edge has hundreds of nodes to a spacing of the
-/// interior, not about all of them, to one per cent. O(n): a tenth of a microsecond for a node amid others of its
+/// The largest empty circle is looked for about the Voronoi vertices in the section and about the places where sides of Voronoi
+/// cells cross the boundary; where an edge has hundreds of nodes to a spacing of the interior, not for all of them, to one
+/// per cent. O(n): a tenth of a microsecond for a node amid others of its
 /// lattice, one microsecond for others.
 ///
 /// ```
@@ -291,7 +291,33 @@ impl Cells<'_> {
                     *fill = d2.sqrt();
                 }
             }
+            self.meet_boundary(p, right, fill);
             return self.near.first().map(|(d2, _)| d2.sqrt());
+        }
+    }
+
+    /// Raises `fill` to the distance of `p` from where the sides of its cell cross the boundary: circles about places of the
+    /// boundary itself.
+    fn meet_boundary(&self, p: Point, right: f64, fill: &mut f64) {
+        let index = self.boundary.index();
+        for (k, &c) in self.corners.iter().enumerate() {
+            let d = self.corners[(k + 1) % self.corners.len()];
+            if dot(c, c).max(dot(d, d)) <= *fill * *fill {
+                continue;
+            }
+            let (from, side) = ([p[0] + c[0], p[1] + c[1]], sub(d, c));
+            index.candidates(from, [p[0] + d[0], p[1] + d[1]], 0.0, |s| {
+                let [a, b] = index.segment(s);
+                let (along, to_a) = (sub(b, a), sub(a, from));
+                let denominator = cross(side, along);
+                let (t, u) = (cross(to_a, along) / denominator, cross(to_a, side) / denominator);
+                if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u) {
+                    let reach = dot(lerp(c, d, t), lerp(c, d, t)).sqrt();
+                    if reach <= right {
+                        *fill = fill.max(reach);
+                    }
+                }
+            });
         }
     }
 
@@ -439,6 +465,24 @@ mod tests {
             let room = room_in_triangle([a, b, c]).sqrt();
             assert!(room >= most - 1e-12 && room < most + 5e-3, "{room}, sampled {most}"); // the sampling's spacing
         }
+    }
+
+    #[test]
+    fn a_circle_about_a_place_of_the_boundary_is_found() {
+        // A side of two segments, and clearances that leave a strip along it: the circle about (1.13, 0), not about its middle.
+        let mut contour = Outline::polygon([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
+        contour.edges[0].nodes = Some(3);
+        let params = CloudParams {
+            nodes: [6, 6],
+            clearance: crate::ClearanceUnit::Scaled,
+            edge_clearance: 0.9,
+            ..CloudParams::default()
+        };
+        let cloud = generate(&Section::solid(contour), &params).unwrap();
+        let nearest = Nearest::new(cloud.xy());
+        let sampled = (0..4000).map(|k| nearest.distance([f64::from(k) * 1e-3, 0.0])).fold(0.0, f64::max);
+        let q = quality(&cloud).unwrap();
+        assert!(q.fill_distance >= sampled && q.fill_distance < sampled + 1e-3, "{q:?}, sampled {sampled}");
     }
 
     #[test]

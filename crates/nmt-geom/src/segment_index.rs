@@ -21,6 +21,7 @@ pub struct SegmentIndex {
     boxes: Vec<TreeBox>, // depth first: a box, what is in its first half, what is in its second half
     envelope: Bbox,
     room: f64,
+    upright_rays: bool, // rays along y cross fewer segments than rays along x
 }
 
 /// A box of the tree.
@@ -53,7 +54,10 @@ impl SegmentIndex {
             split(&mut leaves, &mut boxes);
         }
         let room = if magnitude.is_finite() { ROOM_REL * magnitude } else { 0.0 };
-        Self { segments, boxes, envelope, room }
+        // Crossings of a ray, on average: the extent of all segments across it over that of the envelope.
+        let crossings = |d: usize, extent: f64| segments.iter().map(|[a, b]| (b[d] - a[d]).abs()).sum::<f64>() / extent;
+        let upright_rays = crossings(0, envelope.width()) < crossings(1, envelope.height());
+        Self { segments, boxes, envelope, room, upright_rays }
     }
 
     /// Number of segments.
@@ -141,8 +145,20 @@ impl SegmentIndex {
         }
     }
 
-    /// Asks `stop` about every segment that the ray from `p` towards +x may cross, until it holds.
+    /// Asks `stop` about every segment that a ray from `p` may cross, until it holds: towards +x, or +y where that crosses
+    /// fewer, as between the teeth of a comb.
     pub(crate) fn crossed_by_ray(&self, p: Point, mut stop: impl FnMut(Crossing, usize) -> bool) -> bool {
+        if self.upright_rays {
+            let meets = |TreeBox { envelope: Bbox { min, max }, .. }: &TreeBox| {
+                min[0] <= p[0] && p[0] <= max[0] && p[1] <= max[1]
+            };
+            // The same question in the plane with x and y exchanged.
+            let turned = |[x, y]: Point| [y, x];
+            return self.any_in_boxes(meets, |k| {
+                let [a, b] = self.segments[k];
+                stop(ray_crossing(turned(p), turned(a), turned(b)), k)
+            });
+        }
         let meets =
             |TreeBox { envelope: Bbox { min, max }, .. }: &TreeBox| min[1] <= p[1] && p[1] <= max[1] && p[0] <= max[0];
         self.any_in_boxes(meets, |k| {
@@ -263,6 +279,30 @@ mod tests {
         assert!(looked_at < 12 * 2 * n, "{looked_at}"); // at most three leaves each
         assert!(index.any_within([0.5, 0.5 + 2e-6], 1.1e-6) && !index.any_within([0.5, 0.5 + 2e-6], 0.9e-6));
         assert!(index.close_pairs(0.0).len() < 2 * n);
+    }
+
+    #[test]
+    fn a_point_between_the_teeth_of_a_comb_is_located_across_few_of_them() {
+        let n = 2000;
+        let mut corners: Vec<Point> = vec![[0.0, -1.0], [f64::from(n), -1.0]];
+        for k in (0..n).rev().map(f64::from) {
+            corners.extend([[k + 0.8, 0.0], [k + 0.75, 1e3], [k + 0.25, 1e3], [k + 0.2, 0.0]]);
+        }
+        for turned in [false, true] {
+            let at = |[x, y]: Point| if turned { [y, x] } else { [x, y] };
+            let ends = (0..corners.len()).map(|k| [at(corners[k]), at(corners[(k + 1) % corners.len()])]);
+            let index = SegmentIndex::new(ends);
+            let mut looked_at = 0;
+            for k in (0..n).map(f64::from) {
+                assert_eq!(index.locate(at([k + 0.5, 500.0])), Location::Inside);
+                assert_eq!(index.locate(at([k + 0.01, 500.0])), Location::Outside);
+                index.crossed_by_ray(at([k + 0.5, 500.0]), |_, _| {
+                    looked_at += 1;
+                    false
+                });
+            }
+            assert!(looked_at < 40 * n, "{looked_at}");
+        }
     }
 
     #[test]

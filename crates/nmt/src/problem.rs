@@ -7,7 +7,7 @@
 //! Limits of our own, beyond those the method needs: numbers are at most 1e30 in size, and lengths, moduli, twist and
 //! torque at least 1e-30, so that nothing overflows later; the problem lies within 1e6 times its size of the origin, and
 //! no contour or hole is smaller than 1e-6 of it, so that tolerances relative to the size tell points apart; clearances
-//! are 0.01 to 1 spacing; names hold no `;` and no control character.
+//! are 0 to 2 spacings; names hold no `;` and no control character.
 
 mod check;
 mod error;

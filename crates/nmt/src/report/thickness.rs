@@ -80,7 +80,7 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
             thinnest = Some((across, along(middle, width / 2.0, normal)));
         }
     }
-    thinnest.map(|(across, at)| ThinSpot { nodes_across: (across + 1e-9).floor() as usize + 1, at })
+    thinnest.map(|(across, at)| ThinSpot { nodes_across: ((across + 1e-9).floor() as usize).max(1) + 1, at })
 }
 
 /// A vertex of the outline whose sides meet at an acute angle.
