@@ -53,11 +53,12 @@ for problem in sorted(problems.glob("*.toml")):
         expect(own.sum() == subdomain["triangles"], f"{problem}: numbers of triangles differ")
         expect(abs(areas[own].sum() / subdomain["area"] - 1) < 1e-12, f"{problem}: area of the report differs")
         expect(all(np.isfinite(subdomain[key]) for key in ("J", "torque", "F_max", "tau_max", "W_t")), f"{problem}: not finite")
-        # Integral of the linear interpolant: close to the report's J, which has three digits more.
+        # Integral of the linear interpolant: close to the report's J, which has three digits more. It is off by h², which is a
+        # tenth for the 80 nodes of the coarsest problem and a hundredth and less for the others.
         f = mesh.point_data["F"][triangles[own]].mean(axis=1)
         holes = sum(hole["F"] * hole["area"] for hole in subdomain["holes"])
         torque = 2 * (f * areas[own]).sum() + 2 * holes
-        expect(abs(torque / subdomain["torque"] - 1) < 0.1, f"{problem}: torque {torque} against {subdomain['torque']}")
+        expect(abs(torque / subdomain["torque"] - 1) < (0.1 if subdomain["nodes"] > 200 else 0.15), f"{problem}: torque {torque} against {subdomain['torque']}")
 
     for picture in ("nodes", "mesh", "solution"):
         root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
