@@ -1,6 +1,6 @@
 //! Every node in a triangle, every segment an edge, the areas those of the section.
 
-use crate::sections::{Shape, any_density, any_shape, mesh, params};
+use crate::sections::{Shape, any_density, any_shape, mesh, narrow_slot, params};
 use nmt_cloud::{CloudParams, Section};
 use nmt_curve::Outline;
 use nmt_geom::Point;
@@ -25,20 +25,6 @@ fn assert_fills(mesh: &Mesh, section: &Section) {
     let (found, exact) = (mesh.total_area(), polygon_area(section));
     // Nodes of skew edges are off the edge by rounding: 1e-16 of the size times the perimeter, 1e-14 of the area.
     assert!((found / exact - 1.0).abs() < 1e-11, "{found} {exact}");
-}
-
-/// The plate with a slot that narrows to 0.06 at its mouth, meshed with spacings of half a unit.
-fn narrow_slot() -> Section {
-    Section::solid(Outline::polygon([
-        [0.0, 0.0],
-        [4.0, 0.0],
-        [4.0, 1.0],
-        [0.5, 1.0],
-        [0.5, 1.06],
-        [3.7, 1.1],
-        [3.7, 2.0],
-        [0.0, 2.0],
-    ]))
 }
 
 fn rotated(corners: &[Point], angle: f64, centre: Point) -> Vec<Point> {

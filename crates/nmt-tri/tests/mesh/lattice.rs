@@ -1,7 +1,7 @@
 //! The way by the lattice against the general way: the same triangles, whatever the cloud; and it is really taken for
 //! ordinary ones.
 
-use crate::sections::{Shape, any_density, any_shape, cloud, params};
+use crate::sections::{Shape, any_density, any_shape, cloud, narrow_slot, params};
 use nmt_cloud::{Census, ClearanceUnit, Cloud, CloudParams, Section, generate, generate_with};
 use nmt_curve::Outline;
 use nmt_geom::{Point, RealBoundary};
@@ -130,18 +130,8 @@ proptest! {
 
 #[test]
 fn both_ways_agree_on_narrow_slots_and_slits() {
-    let narrow = Section::solid(Outline::polygon([
-        [0.0, 0.0],
-        [4.0, 0.0],
-        [4.0, 1.0],
-        [0.5, 1.0],
-        [0.5, 1.06],
-        [3.7, 1.1],
-        [3.7, 2.0],
-        [0.0, 2.0],
-    ]));
     for (section, densities) in [
-        (narrow, vec![[9, 9], [9, 5], [7, 12], [17, 9], [33, 17], [160, 80]]),
+        (narrow_slot(), vec![[9, 9], [9, 5], [7, 12], [17, 9], [33, 17], [160, 80]]),
         (Shape::Slotted { width: 1e-6 }.section(1.0), vec![[9, 9], [21, 11], [41, 41], [150, 75]]),
     ] {
         for nodes in densities {

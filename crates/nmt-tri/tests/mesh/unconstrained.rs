@@ -1,6 +1,6 @@
 //! The paper's own way: Delaunay of all nodes, elimination, completion.
 
-use crate::sections::{any_density, any_shape, params};
+use crate::sections::{any_density, any_shape, narrow_slot, params};
 use nmt_cloud::{Cloud, CloudParams, Section, generate};
 use nmt_curve::Outline;
 use nmt_tri::{Elimination, Mesh, MeshCensus, MeshError, edges, stages};
@@ -16,20 +16,6 @@ fn checked(cloud: Cloud) -> (Mesh, MeshCensus) {
     let MeshCensus { delaunay, outside, in_hole, tiny, crossing, completed } = census;
     assert_eq!(mesh.n_triangles(), delaunay - outside - in_hole - tiny - crossing + completed, "{census:?}");
     (mesh, census)
-}
-
-/// A plate with a slot whose sides are seen across by nodes of the other side.
-fn narrow_slot() -> Section {
-    Section::solid(Outline::polygon([
-        [0.0, 0.0],
-        [4.0, 0.0],
-        [4.0, 1.0],
-        [0.5, 1.0],
-        [0.5, 1.06],
-        [3.7, 1.1],
-        [3.7, 2.0],
-        [0.0, 2.0],
-    ]))
 }
 
 proptest! {
