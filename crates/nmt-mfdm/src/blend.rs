@@ -6,10 +6,10 @@
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::error::MfdmError;
-use crate::gauss::{Rule, six_points};
+use crate::gauss::{Rule, seven_points, six_points};
 use crate::mwls::{Mwls, dot};
 use crate::parallel::map_chunks;
-use crate::repair::sound_star;
+use crate::repair::{Demand, sound_star};
 use crate::star::StarFinder;
 use crate::stencils::{StarParams, StarReport};
 use crate::surroundings::{Metric, Surroundings};
@@ -33,6 +33,7 @@ pub struct FieldValue {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalPolynomials {
     order: usize,
+    blended_order: usize,   // of what is blended: 0 where the field is the linear interpolant
     coefficients: Vec<f64>, // Taylor coefficients in scaled coordinates, shape (n_nodes, n_monomials)
     radii: Vec<f64>,        // in stretched coordinates, user's length unit
     metric: Metric,
@@ -59,15 +60,17 @@ impl NodalPolynomials {
             poor: Option<MfdmError>,
         }
         let n = n_monomials(params.order);
-        let places = surroundings.stretched();
-        let pieces = map_chunks(0..places.len(), |piece| {
-            let mut finder = StarFinder::new(surroundings, nearest);
+        let n_nodes = surroundings.xy().len();
+        let StarParams { order, size, choice, smoothing } = params;
+        let demand = Demand { order, size, smoothing, negative_diagonal: false };
+        let pieces = map_chunks(0..n_nodes, |piece| {
+            let mut finder = StarFinder::new(surroundings, nearest, choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
             let mut part =
                 Part { coefficients: Vec::new(), radii: Vec::new(), report: StarReport::default(), poor: None };
             for node in piece {
                 let id = NodeId::of(node);
-                let outcome = sound_star(&mut finder, &mut mwls, places, id, params.order, params.size, &mut star);
+                let outcome = sound_star(&mut finder, &mut mwls, id, demand, &mut star);
                 let mut fitted = [0.0; MAX_MONOMIALS];
                 fitted[0] = values[node];
                 if outcome.order == 0 {
@@ -84,8 +87,9 @@ impl NodalPolynomials {
         });
         let mut all = Self {
             order: params.order,
-            coefficients: Vec::with_capacity(n * places.len()),
-            radii: Vec::with_capacity(places.len()),
+            blended_order: params.order,
+            coefficients: Vec::with_capacity(n * n_nodes),
+            radii: Vec::with_capacity(n_nodes),
             metric: surroundings.metric(),
             report: StarReport { size: params.size, ..StarReport::default() },
         };
@@ -95,15 +99,38 @@ impl NodalPolynomials {
             }
             all.coefficients.extend(part.coefficients);
             all.radii.extend(part.radii);
-            all.report.hidden_nodes_skipped += part.report.hidden_nodes_skipped;
-            all.report.enlarged += part.report.enlarged;
-            all.report.order_lowered += part.report.order_lowered;
-            all.report.worst_condition = all.report.worst_condition.max(part.report.worst_condition);
+            all.report.join(&part.report);
         }
         Ok(all)
     }
 
-    /// Order of the polynomials.
+    /// The linear interpolant of `values`: on each triangle the plane through its three nodes. At a node its gradient is
+    /// the mean of those of the triangles around, by area, as finite element programs give it.
+    pub fn linear(mesh: &Mesh, values: &[f64]) -> Self {
+        let n_nodes = values.len();
+        let mut coefficients = vec![0.0; 3 * n_nodes];
+        let mut areas = vec![0.0; n_nodes];
+        for t in mesh.triangles() {
+            let (nodes, area) = (mesh.tri_nodes()[t.index()], mesh.area(t));
+            let slopes = barycentric_gradients(mesh.corners(t));
+            let gradient = [0, 1].map(|d| (0..3).map(|a| values[nodes[a].index()] * slopes[a][d]).sum::<f64>());
+            for node in nodes.map(NodeId::index) {
+                coefficients[3 * node + 1] += area * gradient[0];
+                coefficients[3 * node + 2] += area * gradient[1];
+                areas[node] += area;
+            }
+        }
+        for (node, value) in values.iter().enumerate() {
+            coefficients[3 * node] = *value;
+            if areas[node] > 0.0 {
+                (1..3).for_each(|d| coefficients[3 * node + d] /= areas[node]);
+            }
+        }
+        let report = StarReport::default();
+        Self { order: 1, blended_order: 0, coefficients, radii: vec![1.0; n_nodes], metric: Metric::plain(), report }
+    }
+
+    /// Order of the polynomials at the nodes.
     pub fn order(&self) -> usize {
         self.order
     }
@@ -150,10 +177,10 @@ impl NodalPolynomials {
         let (c, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
         let scaled = [(p[0] - centre[0]) * s_x, (p[1] - centre[1]) * s_y];
         let mut basis = [0.0; MAX_MONOMIALS];
-        monomials(scaled, self.order, &mut basis);
+        monomials(scaled, self.blended_order, &mut basis);
         // The derivative of hᵃkᵇ/(a! b!) along h is the monomial (a − 1, b): a shift of the coefficients.
         let shifted = |da: usize, db: usize| -> f64 {
-            let lower = self.order.saturating_sub(da + db);
+            let Some(lower) = self.blended_order.checked_sub(da + db) else { return 0.0 };
             let mut sum = 0.0;
             for degree in 0..=lower {
                 for b in 0..=degree {
@@ -162,7 +189,7 @@ impl NodalPolynomials {
             }
             sum
         };
-        let laplacian = if self.order >= 2 { shifted(2, 0) * s_x * s_x + shifted(0, 2) * s_y * s_y } else { 0.0 };
+        let laplacian = shifted(2, 0) * s_x * s_x + shifted(0, 2) * s_y * s_y;
         FieldValue { value: shifted(0, 0), gradient: [shifted(1, 0) * s_x, shifted(0, 1) * s_y], laplacian }
     }
 
@@ -196,9 +223,14 @@ impl NodalPolynomials {
         mesh.area(triangle) * weighted.sum::<f64>()
     }
 
-    /// ∫F over the whole mesh: six Gauss points a triangle, exact for polynomials of order 3.
+    /// A rule that integrates the blend exactly: it is of one degree more than its polynomials.
+    pub(crate) fn rule(&self) -> Rule {
+        if self.blended_order <= 3 { six_points() } else { seven_points() }
+    }
+
+    /// ∫F over the whole mesh, exact for the blend.
     pub fn volume(&self, mesh: &Mesh) -> f64 {
-        let rule = six_points();
+        let rule = self.rule();
         let parts = map_chunks(0..mesh.n_triangles(), |piece| {
             piece.map(|t| self.triangle_volume(mesh, TriId::of(t), &rule)).collect::<Vec<f64>>()
         });
@@ -208,7 +240,7 @@ impl NodalPolynomials {
     /// ∫F over a triangle: Σ over its corners a and Gauss points g of w_g·λ_a·P_a, values alone.
     fn triangle_volume(&self, mesh: &Mesh, triangle: TriId, rule: &Rule) -> f64 {
         let corners = mesh.corners(triangle);
-        let n = n_monomials(self.order);
+        let n = n_monomials(self.blended_order);
         let mut sum = 0.0;
         for (a, &node) in mesh.tri_nodes()[triangle.index()].iter().enumerate() {
             let (coefficients, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
@@ -217,8 +249,8 @@ impl NodalPolynomials {
             let mut basis = [0.0; MAX_MONOMIALS];
             for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
                 let [to_b, to_c] = [lambda[(a + 1) % 3], lambda[(a + 2) % 3]];
-                monomials([to_b * b[0] + to_c * c[0], to_b * b[1] + to_c * c[1]], self.order, &mut basis);
-                sum += weight * lambda[a] * dot(coefficients, &basis[..n]);
+                monomials([to_b * b[0] + to_c * c[0], to_b * b[1] + to_c * c[1]], self.blended_order, &mut basis);
+                sum += weight * lambda[a] * dot(&coefficients[..n], &basis[..n]);
             }
         }
         mesh.area(triangle) * sum

@@ -2,17 +2,10 @@
 
 use crate::blend::barycentric_gradients;
 use crate::problem::Formulation;
-use crate::stencils::Stencils;
-use crate::system::{Roles, RowSum, SplitRow};
+use crate::system::{Equation, Roles, RowSum};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::{LoopId, NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
-
-/// The equation of one hole's constant: row · values = rhs (Gθ = 1).
-pub(crate) struct HoleEquation {
-    pub row: SplitRow,
-    pub rhs: f64,
-}
 
 /// Element layers about a hole in which v is 1, for the local formulation.
 ///
@@ -26,13 +19,12 @@ const LOCAL_LAYERS: usize = 2;
 /// all nodes within two element layers of the hole too, in the variational one 0 at all other nodes.
 pub(crate) fn hole_equations(
     mesh: &Mesh,
-    stencils: &Stencils,
+    weak: &WeakForm,
     node_tris: &NodeTris,
     roles: &Roles,
     formulation: Formulation,
-) -> Vec<HoleEquation> {
+) -> Vec<Equation> {
     let layers = if formulation == Formulation::Local { LOCAL_LAYERS } else { 0 };
-    let weak = WeakForm::new(mesh, stencils);
     let (mut sum, mut gathered) = (RowSum::new(mesh.cloud().n_nodes()), Gathered::default());
     let mut is_one = vec![false; mesh.cloud().n_nodes()];
     (0..roles.n_holes)
@@ -54,7 +46,7 @@ pub(crate) fn hole_equations(
                 |t: &TriId| mesh.area(*t) * corners_of_one(*t).iter().filter(|one| **one).count() as f64 / 3.0;
             let rhs = 2.0 * (triangles.iter().map(integral).sum::<f64>() + hole_area(mesh, hole));
             ones.iter().for_each(|node| is_one[node.index()] = false);
-            HoleEquation { row: sum.take(roles), rhs }
+            Equation { row: sum.take(roles), rhs }
         })
         .collect()
 }

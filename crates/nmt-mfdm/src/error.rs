@@ -22,10 +22,61 @@ pub enum MfdmError {
         n_nodes: usize,
     },
     /// The order has no default star or cannot be used.
-    #[error("order {order} is not available; choose 2")]
+    #[error("order {order} is not available in the {formulation} formulation; choose {least} to 4")]
     Order {
         /// The order asked for.
         order: usize,
+        /// The formulation's name.
+        formulation: &'static str,
+        /// The least order it has.
+        least: usize,
+    },
+    /// There is no Gauss rule of so many points.
+    #[error("there is no Gauss rule of {points} points; choose 1, 3, 4, 6, 7 or 12")]
+    Gauss {
+        /// The number asked for.
+        points: usize,
+    },
+    /// The smoothing g is out of range.
+    #[error("a smoothing of {g} is out of range; choose 0, which interpolates, to 1")]
+    Smoothing {
+        /// The value.
+        g: f64,
+    },
+    /// Fluxes alone determine the solution only to a constant.
+    #[error("no edge has a value given, only fluxes: the solution is determined to a constant; give one edge a value")]
+    NoValue,
+    /// A datum of the problem is not finite.
+    #[error("the {quantity} is {value} at ({}, {}); restrict it to what is finite on the section", .at[0], .at[1])]
+    Datum {
+        /// Which.
+        quantity: &'static str,
+        /// Where.
+        at: Point,
+        /// The value.
+        value: f64,
+    },
+    /// A section and a mesh do not belong together.
+    #[error("the cloud has {found} edges on its boundary and the problem {given}; give each edge its condition")]
+    Conditions {
+        /// Edges of the cloud's boundary.
+        found: usize,
+        /// Conditions given.
+        given: usize,
+    },
+    /// Too few visible nodes about a place carry no polynomial.
+    #[error(
+        "the star of ({}, {}) cannot carry a polynomial of order {order}, even with {tried} nodes; \
+         give this part of the section more nodes, or choose trial = \"blended\"",
+        .at[0], .at[1]
+    )]
+    PoorPlace {
+        /// The place.
+        at: Point,
+        /// The order.
+        order: usize,
+        /// Nodes in the largest star tried.
+        tried: usize,
     },
     /// A material or load constant is not usable.
     #[error("{quantity} = {value} must be a finite number other than 0")]

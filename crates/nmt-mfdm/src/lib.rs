@@ -22,21 +22,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assembly;
 mod basis;
 mod blend;
+mod boundary_value;
 mod circulation;
+mod diagnostics;
 mod error;
 pub mod exact;
+mod flux;
+mod galerkin;
 mod gauss;
 mod local;
 mod mwls;
 mod parallel;
+mod params;
 mod post;
 mod problem;
 mod repair;
+mod shapes;
 mod solution;
 mod solve;
 mod solver;
+mod source;
 mod star;
 mod stencils;
 mod surroundings;
@@ -48,15 +56,17 @@ mod weight;
 
 pub use basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
 pub use blend::{FieldValue, NodalPolynomials, barycentric_gradients};
+pub use diagnostics::StarDiagnostics;
 pub use error::MfdmError;
-pub use gauss::{Rule, six_points, three_points};
+pub use gauss::{GAUSS_POINTS, Rule, six_points, three_points};
 pub use mwls::{MAX_CONDITION, Mwls};
+pub use params::{SolveParams, default_gauss};
 pub use post::{Extreme, Extremes, Stress, StressIntegral, extremes, residuals, stress_integrals};
-pub use problem::{Formulation, HoleCondition, Load, TorsionProblem};
+pub use problem::{Formulation, HoleCondition, Load, Test, TorsionProblem, Trial};
 pub use repair::StarOutcome;
 pub use solution::{HoleResult, TorsionSolution};
-pub use solve::{ORDER, RECOVERY_ORDER, SolveParams, Stage, solve, solve_observed};
-pub use star::{StarFinder, default_star};
+pub use solve::{Stage, solve, solve_observed};
+pub use star::{StarChoice, StarFinder, default_star};
 pub use stencils::{StarParams, StarReport, Stencil, Stencils};
 pub use surroundings::{Metric, Surroundings};
 pub use visibility::Visibility;

@@ -1,25 +1,36 @@
-//! The local formulation: one equation a interior node, ∇²F = −2Gθ; paper, eq. (17).
+//! The local formulation: one equation a node, ∇²u = −s inside, n·∇u = q where a flux is given; paper, eq. (17).
 
+use crate::assembly::{Setting, dirichlet_row};
 use crate::basis::row;
+use crate::error::MfdmError;
 use crate::parallel::map_chunks;
 use crate::stencils::Stencils;
-use crate::system::{LinearSystem, Roles, SplitRow};
+use crate::system::{Equation, LinearSystem, Roles, RowSum, SplitRow};
 use nmt_geom::NodeId;
-use nmt_tri::Mesh;
 
-/// Collocates −∇²F = 2 (Gθ = 1) at every interior node, each equation multiplied by its star's radius², so that all
-/// rows are of one size whatever the spacing.
-pub(crate) fn assemble(mesh: &Mesh, stencils: &Stencils, roles: &Roles) -> LinearSystem {
-    let n_boundary = mesh.cloud().n_boundary();
-    let pieces = map_chunks(n_boundary..mesh.cloud().n_nodes(), |piece| {
-        piece.map(|node| laplacian_row(stencils, roles, NodeId::of(node))).collect::<Vec<_>>()
+/// Collocates −∇²u = s at every interior node and n·∇u = q at those with a flux, each equation multiplied by its star's
+/// radius to the power of its derivatives, so that all rows are of one size whatever the spacing.
+pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
+    let Setting { mesh, stencils, roles, source, fluxes, .. } = setting;
+    let pieces = map_chunks(0..roles.n_unknowns, |piece| {
+        // Only smoothing polynomials have Dirichlet rows, which are summed.
+        let mut sum = RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
+        let equation = |k: usize| {
+            let node = roles.node(k);
+            if let Some(equation) = dirichlet_row(setting, node, &mut sum)? {
+                return Ok(equation);
+            }
+            let radius = stencils.of(node).radius;
+            if let Some(flux) = fluxes.of_node(node) {
+                return Ok(Equation { row: slope_row(stencils, roles, node, flux.normal), rhs: flux.q * radius });
+            }
+            let rhs = source.at(mesh.xy()[node.index()])? * radius * radius;
+            Ok(Equation { row: laplacian_row(stencils, roles, node), rhs })
+        };
+        piece.map(equation).collect::<Result<Vec<_>, MfdmError>>()
     });
-    let mut system = LinearSystem::new(roles.n_holes);
-    for (k, equation) in pieces.into_iter().flatten().enumerate() {
-        let radius = stencils.of(NodeId::of(n_boundary + k)).radius;
-        system.push(&equation, 2.0 * radius * radius);
-    }
-    system
+    let equations = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(LinearSystem::of(roles.n_holes, equations.into_iter().flatten()))
 }
 
 fn laplacian_row(stencils: &Stencils, roles: &Roles, node: NodeId) -> SplitRow {
@@ -29,6 +40,17 @@ fn laplacian_row(stencils: &Stencils, roles: &Roles, node: NodeId) -> SplitRow {
     let mut split = SplitRow::default();
     for (k, &other) in stencil.nodes.iter().enumerate() {
         split.add(roles.of(other), -(xx[k] * s_x + yy[k] * s_y));
+    }
+    split
+}
+
+fn slope_row(stencils: &Stencils, roles: &Roles, node: NodeId, normal: [f64; 2]) -> SplitRow {
+    let stencil = stencils.of(node);
+    let (by_x, by_y) = (stencil.row(row(1, 0)), stencil.row(row(0, 1)));
+    let [s_x, s_y] = stencils.metric().stretch();
+    let mut split = SplitRow::default();
+    for (k, &other) in stencil.nodes.iter().enumerate() {
+        split.add(roles.of(other), normal[0] * s_x * by_x[k] + normal[1] * s_y * by_y[k]);
     }
     split
 }

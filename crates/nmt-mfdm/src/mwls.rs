@@ -18,50 +18,57 @@ const ON_ONE_LINE_REL: f64 = 1.0e-6;
 
 /// The least-squares system of one star, factorised; to be used again for the next star.
 ///
-/// The polynomial meets the centre's value exactly and minimises Σ w (P(x_i) − u_i)² over the other nodes \[D11\].
+/// Where the centre is a node and g = 0, the polynomial meets its value exactly and minimises Σ w (P(x_i) − u_i)² over
+/// the other nodes; otherwise, at a point that is none or with g > 0, over all nodes \[D11\].
 #[derive(Clone, Debug, Default)]
 pub struct Mwls {
     order: usize,
     radius: f64,
-    n_rows: usize,                  // nodes without the centre
+    first: usize, // monomial of the first column: 1 where the centre's value is met, else 0
+    n_columns: usize,
+    n_rows: usize,                  // nodes without a centre that is met
     a: Vec<f64>,                    // Householder vectors below R, column by column, shape (n_columns, n_rows)
     diagonal: [f64; MAX_MONOMIALS], // of R
     tau: [f64; MAX_MONOMIALS],
     scale: [f64; MAX_MONOMIALS], // 1/length of each column
     root_weight: Vec<f64>,
-    others: Vec<usize>, // positions in the star of all nodes but the centre
-    centre: usize,      // position in the star of the centre
+    others: Vec<usize>, // positions in the star of all nodes but a centre that is met
+    centre: usize,      // position in the star of a centre that is met
     condition: f64,
     work: Vec<f64>,
 }
 
 impl Mwls {
-    /// Factorises the system of the star `star` (its points, the centre at position `centre`) for `order`.
+    /// Factorises the system of the star `star` (its points) about `centre_at` for `order`; its value is met exactly
+    /// where it is the node at position `met`, and the weights smooth with `g`.
     ///
     /// Returns the condition number, ∞ where the star has too few nodes.
     pub fn factorise(
         &mut self,
         points: impl Iterator<Item = Point>,
         centre_at: Point,
-        centre: usize,
+        met: Option<usize>,
         order: usize,
+        g: f64,
     ) -> f64 {
-        let n_columns = n_monomials(order) - 1;
         self.order = order;
-        self.centre = centre;
+        self.centre = met.unwrap_or(usize::MAX);
+        self.first = usize::from(met.is_some());
+        self.n_columns = n_monomials(order) - self.first;
         self.others.clear();
         self.root_weight.clear();
         self.work.clear();
         let mut radius_squared = 0.0f64;
         // `work` holds the offsets until the radius is known.
         for (position, p) in points.enumerate() {
-            if position != centre {
+            if Some(position) != met {
                 let offset = sub(p, centre_at);
                 radius_squared = radius_squared.max(distance_squared(p, centre_at));
                 self.others.push(position);
                 self.work.extend(offset);
             }
         }
+        let (first, n_columns) = (self.first, self.n_columns);
         self.radius = radius_squared.sqrt();
         self.n_rows = self.others.len();
         self.condition = f64::INFINITY;
@@ -73,14 +80,14 @@ impl Mwls {
         let mut basis = [0.0; MAX_MONOMIALS];
         for i in 0..self.n_rows {
             let scaled = [self.work[2 * i] / self.radius, self.work[2 * i + 1] / self.radius];
-            let root = weight(scaled[0] * scaled[0] + scaled[1] * scaled[1], order).sqrt();
+            let root = weight(scaled[0] * scaled[0] + scaled[1] * scaled[1], g, order).sqrt();
             self.root_weight.push(root);
             monomials(scaled, order, &mut basis);
             for m in 0..n_columns {
-                self.a[m * self.n_rows + i] = root * basis[m + 1];
+                self.a[m * self.n_rows + i] = root * basis[m + first];
             }
         }
-        if self.is_on_one_line() {
+        if order > 0 && self.is_on_one_line() {
             return self.condition;
         }
         self.scale_columns(n_columns);
@@ -95,7 +102,7 @@ impl Mwls {
         let square = |m: usize| {
             dot(&self.a[m * self.n_rows..(m + 1) * self.n_rows], &self.a[m * self.n_rows..(m + 1) * self.n_rows])
         };
-        let (h, k) = (square(0), square(1));
+        let (h, k) = (square(1 - self.first), square(2 - self.first));
         h.min(k) <= ON_ONE_LINE_REL * ON_ONE_LINE_REL * h.max(k)
     }
 
@@ -165,8 +172,8 @@ impl Mwls {
     /// Coefficients of the polynomial through `values` (one a node of the star, in its order), into
     /// `out[..n_monomials(order)]`: the derivatives u, u_x, u_y, u_xx, … at the centre in scaled coordinates.
     pub fn fit(&mut self, values: impl Fn(usize) -> f64, out: &mut [f64]) {
-        let n_columns = n_monomials(self.order) - 1;
-        let centre = values(self.centre);
+        let (n_columns, first) = (self.n_columns, self.first);
+        let centre = if first == 1 { values(self.centre) } else { 0.0 };
         self.work.clear();
         self.work.extend(self.others.iter().zip(&self.root_weight).map(|(&k, root)| root * (values(k) - centre)));
         for m in 0..n_columns {
@@ -175,19 +182,25 @@ impl Mwls {
         }
         out[0] = centre;
         for i in (0..n_columns).rev() {
-            // out[j + 1] holds the scaled unknown until its own column's scale is taken back.
-            let known: f64 = (i + 1..n_columns).map(|j| self.r(i, j) * out[j + 1] / self.scale[j]).sum();
-            out[i + 1] = (self.work[i] - known) / self.diagonal[i] * self.scale[i];
+            // out[j + first] holds the scaled unknown until its own column's scale is taken back.
+            let known: f64 = (i + 1..n_columns).map(|j| self.r(i, j) * out[j + first] / self.scale[j]).sum();
+            out[i + first] = (self.work[i] - known) / self.diagonal[i] * self.scale[i];
         }
     }
 
-    /// The rows of coefficients: `out[m·n_star + k]` is what node k of the star contributes to derivative m at the
-    /// centre, in scaled coordinates, for m = 1 … n_monomials − 1 (row m stands at (m − 1)·n_star).
+    /// Monomial of the first of the [`Self::rows`]: 1 where the centre's value is met, since its own row says nothing
+    /// new, otherwise 0.
+    pub fn first_row(&self) -> usize {
+        self.first
+    }
+
+    /// The rows of coefficients: `out[(m − first)·n_star + k]` is what node k of the star contributes to derivative m at
+    /// the centre, in scaled coordinates, for m = first … n_monomials − 1 (see [`Self::first_row`]).
     ///
     /// They reproduce every polynomial of degree ≤ order to rounding.
     pub fn rows(&mut self, out: &mut Vec<f64>) {
-        let n_columns = n_monomials(self.order) - 1;
-        let (n, n_star) = (self.n_rows, self.n_rows + 1);
+        let n_columns = self.n_columns;
+        let (n, n_star) = (self.n_rows, self.n_rows + self.first);
         // Thin Q, column by column: reflections applied backwards to unit vectors.
         self.work.clear();
         self.work.resize(n_columns * n, 0.0);
@@ -197,9 +210,9 @@ impl Mwls {
                 reflect(&self.a[m * n + m..(m + 1) * n], self.tau[m], &mut column[m..]);
             }
         }
-        let first = out.len();
-        out.resize(first + n_columns * n_star, 0.0);
-        let out = &mut out[first..];
+        let start = out.len();
+        out.resize(start + n_columns * n_star, 0.0);
+        let out = &mut out[start..];
         for i in (0..n_columns).rev() {
             // Row i of R⁻¹Qᵀ in place of column i of Q.
             for j in i + 1..n_columns {
@@ -219,7 +232,9 @@ impl Mwls {
                 row[position] = coefficient;
                 sum += coefficient;
             }
-            row[self.centre] = -sum;
+            if self.first == 1 {
+                row[self.centre] = -sum;
+            }
         }
     }
 }
@@ -271,7 +286,7 @@ mod tests {
             let star: Vec<Point> = (0..49).map(|k| [(k % 7) as f64 - 3.0 + jitter[k][0], (k / 7) as f64 - 3.0 + jitter[k][1]]).collect();
             let centre = star[24];
             let mut mwls = Mwls::default();
-            let condition = mwls.factorise(star.iter().copied(), centre, 24, order);
+            let condition = mwls.factorise(star.iter().copied(), centre, Some(24), order, 0.0);
             prop_assert!(condition < MAX_CONDITION, "{}", condition);
             let values: Vec<f64> = star.iter().map(|&p| polynomial(&coefficients, order, centre, p)).collect();
             let mut fitted = [0.0; MAX_MONOMIALS];
@@ -295,11 +310,42 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn smoothing_stars_and_stars_of_points_reproduce_polynomials_too(
+            order in 0usize..=4,
+            g in 0.0..0.6f64,
+            at in prop::array::uniform2(0.2..0.8f64),
+            coefficients in prop::collection::vec(-1.0..1.0f64, MAX_MONOMIALS),
+        ) {
+            let star: Vec<Point> = (0..49).map(|k| [f64::from(k % 7) - 3.0, f64::from(k / 7) - 3.0]).collect();
+            let mut mwls = Mwls::default();
+            let condition = mwls.factorise(star.iter().copied(), at, None, order, g);
+            prop_assert!(condition < MAX_CONDITION, "{}", condition);
+            let values: Vec<f64> = star.iter().map(|&p| polynomial(&coefficients, order, at, p)).collect();
+            let mut fitted = [0.0; MAX_MONOMIALS];
+            mwls.fit(|k| values[k], &mut fitted);
+            let mut rows = Vec::new();
+            mwls.rows(&mut rows);
+            prop_assert_eq!(mwls.first_row(), 0);
+            for a in 0..=order {
+                for b in 0..=order - a {
+                    let m = row(a, b);
+                    let expected = coefficients[m] * mwls.radius().powi((a + b) as i32);
+                    let tolerance = 1e-11 * condition * mwls.radius().powi(order as i32); // rounding times condition
+                    let by_row: f64 = (0..49).map(|k| rows[m * 49 + k] * values[k]).sum();
+                    prop_assert!((fitted[m] - expected).abs() < tolerance, "fit {} {}", fitted[m], expected);
+                    prop_assert!((by_row - expected).abs() < tolerance, "row {} {}", by_row, expected);
+                }
+            }
+        }
+    }
+
     #[test]
     fn fifteen_nearest_nodes_of_an_edge_node_of_a_regular_grid_do_not_carry_a_cubic() {
         // They are three rows of five: nothing tells y³ from y and y².
         let star: Vec<Point> = (0..15).map(|k| [f64::from(k % 5) - 2.0, f64::from(k / 5)]).collect();
-        let condition = Mwls::default().factorise(star.iter().copied(), [0.0, 0.0], 2, 3);
+        let condition = Mwls::default().factorise(star.iter().copied(), [0.0, 0.0], Some(2), 3, 0.0);
         assert!(condition > MAX_CONDITION, "{condition}");
     }
 
@@ -311,7 +357,7 @@ mod tests {
             let t = 0.3 + 0.6 * f64::from(k);
             [t.cos() - 1.0, t.sin()]
         }));
-        let condition = Mwls::default().factorise(star.iter().copied(), [0.0, 0.0], 0, 2);
+        let condition = Mwls::default().factorise(star.iter().copied(), [0.0, 0.0], Some(0), 2, 0.0);
         assert!(condition > MAX_CONDITION, "{condition}");
     }
 
@@ -320,7 +366,7 @@ mod tests {
         // Nine nodes of a square grid: interpolating weights favour the cross; the row must still be symmetric.
         let star: Vec<Point> = (0..9).map(|k| [f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0]).collect();
         let mut mwls = Mwls::default();
-        mwls.factorise(star.iter().copied(), [0.0, 0.0], 4, 2);
+        mwls.factorise(star.iter().copied(), [0.0, 0.0], Some(4), 2, 0.0);
         let mut rows = Vec::new();
         mwls.rows(&mut rows);
         let laplacian: Vec<f64> =

@@ -10,17 +10,69 @@ pub enum Formulation {
     /// The weak form (18): trial functions blended from nodal polynomials, linear hats as test functions \[D13\].
     #[default]
     Variational,
+    /// Linear finite elements on the same mesh, for comparison; results are those of the linear interpolant.
+    Fem,
 }
 
 impl Formulation {
     /// Every formulation, in the order of the documentation.
-    pub const ALL: [Self; 2] = [Self::Variational, Self::Local];
+    pub const ALL: [Self; 3] = [Self::Variational, Self::Local, Self::Fem];
+
+    /// The meshless ones.
+    pub const MESHLESS: [Self; 2] = [Self::Variational, Self::Local];
 
     /// The word of the problem file and of the reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Local => "local",
             Self::Variational => "variational",
+            Self::Fem => "fem",
+        }
+    }
+}
+
+/// Trial functions of the variational form; paper, eq. (18) \[D13\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trial {
+    /// On each triangle the polynomials of its three nodes, blended by the barycentric coordinates.
+    #[default]
+    Blended,
+    /// The paper's: MWLS at every Gauss point from the nodes nearest to it. Discontinuous where the star changes.
+    Mwls,
+}
+
+impl Trial {
+    /// Both, in the order of the documentation.
+    pub const ALL: [Self; 2] = [Self::Blended, Self::Mwls];
+
+    /// The word of the problem file and of the reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Blended => "blended",
+            Self::Mwls => "mwls",
+        }
+    }
+}
+
+/// Test functions of the variational form; paper, eq. (18) \[D13\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Test {
+    /// The linear hats of the mesh (Petrov–Galerkin).
+    #[default]
+    Hat,
+    /// The trial functions themselves (Bubnov–Galerkin), as the paper has it.
+    Trial,
+}
+
+impl Test {
+    /// Both, in the order of the documentation.
+    pub const ALL: [Self; 2] = [Self::Hat, Self::Trial];
+
+    /// The word of the problem file and of the reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hat => "hat",
+            Self::Trial => "trial",
         }
     }
 }

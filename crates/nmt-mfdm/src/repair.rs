@@ -1,9 +1,9 @@
 //! A star that cannot carry its polynomial is enlarged, then the order is lowered; who it was is kept.
 
-use crate::basis::{MAX_ORDER, n_monomials};
+use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
 use crate::mwls::{MAX_CONDITION, Mwls};
-use crate::star::{StarFinder, default_star};
-use nmt_geom::{NodeId, Point};
+use crate::star::{StarChoice, StarFinder, default_star};
+use nmt_geom::NodeId;
 
 /// A star of order p whose condition number is above `SOUND_CONDITION[p]` is enlarged, to see whether more nodes help;
 /// the best one is kept.
@@ -34,67 +34,116 @@ pub struct StarOutcome {
     pub hidden: usize,
     /// Condition number of its system.
     pub condition: f64,
+    /// True where the node's own coefficient in its ∇² row is not negative, and no larger star mended it.
+    pub wrong_sign: bool,
 }
 
-/// Finds the star of `node` that carries a polynomial of `order`, or of the highest lower one; its nodes into `star`,
-/// its factorised system into `mwls`. `places` are the stretched coordinates of the nodes.
+/// What a star must carry.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand {
+    pub order: usize,
+    pub size: usize,
+    /// g of the weight.
+    pub smoothing: f64,
+    /// The node's own coefficient in its ∇² row, at order 2, shall be negative: with the wrong sign the row couples the
+    /// node to itself as a source, and the local system loses its diagonal.
+    pub negative_diagonal: bool,
+}
+
+/// Finds the star of `node` that carries what is demanded, or a polynomial of the highest lower order; its nodes into
+/// `star`, its factorised system into `mwls`.
 pub(crate) fn sound_star(
     finder: &mut StarFinder,
     mwls: &mut Mwls,
-    places: &[Point],
     node: NodeId,
-    order: usize,
-    size: usize,
+    demand: Demand,
     star: &mut Vec<NodeId>,
 ) -> StarOutcome {
-    for lower in (1..=order).rev() {
-        let first_size = if lower == order { size } else { default_star(lower) }.max(n_monomials(lower));
+    let asked = finder.choice();
+    for order in (1..=demand.order).rev() {
+        let first_size = if order == demand.order { demand.size } else { default_star(order) }.max(n_monomials(order));
+        let demand = Demand { order, negative_diagonal: demand.negative_diagonal && order == 2, ..demand };
         let mut best: Option<Candidate> = None;
-        let mut last_found = 0;
-        for wanted in sizes(first_size, lower) {
-            let candidate = try_star(finder, mwls, places, node, lower, wanted, star);
-            if star.len() == last_found {
-                break; // no more nodes are visible
-            }
-            last_found = star.len();
-            if best.is_none_or(|best| candidate.condition < best.condition) {
-                best = Some(candidate);
-            }
-            if candidate.condition <= SOUND_CONDITION[lower] {
+        // Nodes from all sides are tried where the nearest leave a wrong sign.
+        for choice in [asked, StarChoice::Balanced] {
+            if best.is_some_and(|best| !best.wrong_sign) || best.is_some() && choice == asked {
                 break;
+            }
+            finder.choose(choice);
+            let mut last_found = 0;
+            for wanted in sizes(first_size, order) {
+                let candidate = try_star(finder, mwls, node, demand, wanted, star);
+                if star.len() == last_found {
+                    break; // no more nodes are visible
+                }
+                last_found = star.len();
+                if best.is_none_or(|best| candidate.rank() < best.rank()) {
+                    best = Some(candidate);
+                }
+                if candidate.condition <= SOUND_CONDITION[order] && !candidate.wrong_sign {
+                    break;
+                }
             }
         }
         if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
             // The star of the last try may not be the best one: find that again.
-            let Candidate { wanted, hidden, condition } = best;
-            try_star(finder, mwls, places, node, lower, wanted, star);
-            return StarOutcome { order: lower, enlarged: wanted > first_size, hidden, condition };
+            let Candidate { choice, wanted, hidden, condition, wrong_sign } = best;
+            finder.choose(choice);
+            try_star(finder, mwls, node, demand, wanted, star);
+            finder.choose(asked);
+            return StarOutcome { order, enlarged: wanted > first_size, hidden, condition, wrong_sign };
         }
+        finder.choose(asked);
     }
-    StarOutcome { order: 0, enlarged: true, hidden: 0, condition: f64::INFINITY }
+    StarOutcome { enlarged: true, condition: f64::INFINITY, ..StarOutcome::default() }
 }
 
 /// A star that was tried.
 #[derive(Clone, Copy)]
 struct Candidate {
+    choice: StarChoice,
     wanted: usize,
     hidden: usize,
     condition: f64,
+    wrong_sign: bool,
+}
+
+impl Candidate {
+    /// Smaller is better: what cannot be used, then signs, then conditions.
+    fn rank(&self) -> (bool, bool, f64) {
+        (self.condition > MAX_CONDITION, self.wrong_sign, self.condition)
+    }
 }
 
 fn try_star(
     finder: &mut StarFinder,
     mwls: &mut Mwls,
-    places: &[Point],
     node: NodeId,
-    order: usize,
+    demand: Demand,
     wanted: usize,
     star: &mut Vec<NodeId>,
 ) -> Candidate {
     let hidden = finder.find(node, wanted, star);
+    let places = finder.surroundings().stretched();
     let condition = match star.iter().position(|n| *n == node) {
-        Some(centre) => mwls.factorise(star.iter().map(|n| places[n.index()]), places[node.index()], centre, order),
+        Some(centre) => {
+            let met = (demand.smoothing == 0.0).then_some(centre);
+            let points = star.iter().map(|n| places[n.index()]);
+            mwls.factorise(points, places[node.index()], met, demand.order, demand.smoothing)
+        }
         None => f64::INFINITY,
     };
-    Candidate { wanted, hidden, condition }
+    let wrong_sign = demand.negative_diagonal
+        && condition <= MAX_CONDITION
+        && laplacian_diagonal(mwls, finder, star.iter().position(|n| *n == node)) >= 0.0;
+    Candidate { choice: finder.choice(), wanted, hidden, condition, wrong_sign }
+}
+
+/// The node's own coefficient in its ∇² row, in scaled coordinates: ∇² of the polynomial through 1 at the node, 0 at the
+/// others.
+fn laplacian_diagonal(mwls: &mut Mwls, finder: &StarFinder, centre: Option<usize>) -> f64 {
+    let mut fitted = [0.0; MAX_MONOMIALS];
+    mwls.fit(|k| if Some(k) == centre { 1.0 } else { 0.0 }, &mut fitted);
+    let [s_x, s_y] = finder.surroundings().metric().stretch();
+    fitted[row(2, 0)] * s_x * s_x + fitted[row(0, 2)] * s_y * s_y
 }

@@ -1,6 +1,7 @@
 //! What a solution holds: nodal values, the recovered field, results, diagnostics.
 
 use crate::blend::{FieldValue, NodalPolynomials};
+use crate::diagnostics::StarDiagnostics;
 use crate::post::{Extreme, Stress};
 use crate::problem::HoleCondition;
 use crate::stencils::StarReport;
@@ -40,6 +41,8 @@ pub struct TorsionSolution {
     pub stars: StarReport,
     /// What became of the stars of the recovery.
     pub recovery_stars: StarReport,
+    /// The star of each node in the equations, shape (n_nodes,); empty for finite elements.
+    pub star_diagnostics: Vec<StarDiagnostics>,
 }
 
 /// One hole in a solution.

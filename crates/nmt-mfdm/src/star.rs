@@ -1,9 +1,41 @@
-//! Stars: the nearest visible nodes of a point \[D10\].
+//! Stars: the nearest visible nodes of a point, or as near as they come from all sides \[D10\].
 
 use crate::surroundings::Surroundings;
 use nmt_cloud::{Nearest, Scratch};
-use nmt_geom::NodeId;
-use nmt_geom::point::distance_squared;
+use nmt_geom::point::{distance_squared, sub};
+use nmt_geom::{NodeId, Point};
+use std::f64::consts::FRAC_PI_8;
+
+/// How the nodes of a star are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StarChoice {
+    /// The nearest visible nodes.
+    #[default]
+    Nearest,
+    /// The nearest visible nodes of each of eight sectors alike: for clouds whose density changes within a star, where
+    /// the nearest nodes lie on the dense side.
+    Balanced,
+}
+
+impl StarChoice {
+    /// Both, in the order of the documentation.
+    pub const ALL: [Self; 2] = [Self::Nearest, Self::Balanced];
+
+    /// The word of the problem file and of the reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Balanced => "balanced",
+        }
+    }
+}
+
+/// Sectors of a balanced star: their middles are the axes and the diagonals, so that rounding of a regular cloud moves no
+/// node from one to another.
+const SECTORS: usize = 8;
+
+/// A balanced star is chosen among so many times its size of nearest nodes.
+const CANDIDATES: usize = 4;
 
 /// Nodes in a star by default, the centre included: 6, 9, 20, 30 for orders 1 to 4.
 pub fn default_star(order: usize) -> usize {
@@ -19,38 +51,118 @@ pub fn default_star(order: usize) -> usize {
 pub struct StarFinder<'a> {
     surroundings: &'a Surroundings<'a>,
     nearest: &'a Nearest<'a>,
+    choice: StarChoice,
     scratch: Scratch,
     hidden: Vec<f64>, // distance² of the hidden nodes met
+    candidates: Vec<NodeId>,
 }
 
 impl<'a> StarFinder<'a> {
     /// `nearest` is that of `surroundings`.
-    pub fn new(surroundings: &'a Surroundings<'a>, nearest: &'a Nearest<'a>) -> Self {
-        Self { surroundings, nearest, scratch: Scratch::default(), hidden: Vec::new() }
+    pub fn new(surroundings: &'a Surroundings<'a>, nearest: &'a Nearest<'a>, choice: StarChoice) -> Self {
+        Self { surroundings, nearest, choice, scratch: Scratch::default(), hidden: Vec::new(), candidates: Vec::new() }
     }
 
-    /// The `size` visible nodes nearest to `node`, itself included, by number into `out` (fewer where there are no
-    /// more); returns how many hidden nodes were passed over.
-    pub fn find(&mut self, node: NodeId, size: usize, out: &mut Vec<NodeId>) -> usize {
-        let (surroundings, hidden) = (self.surroundings, &mut self.hidden);
-        let places = surroundings.stretched();
-        let centre = places[node.index()];
-        let farthest =
-            |out: &[NodeId]| out.iter().fold(0.0f64, |r, other| r.max(distance_squared(places[other.index()], centre)));
-        self.nearest.nearest(centre, size, |_| true, &mut self.scratch, out);
-        if surroundings.all_visible(node, farthest(out).sqrt()) {
-            return 0;
-        }
-        hidden.clear();
-        let accept = |other: NodeId| {
-            let visible = surroundings.sees(node, other);
-            if !visible {
-                hidden.push(distance_squared(places[other.index()], centre));
-            }
-            visible
-        };
-        self.nearest.nearest(centre, size, accept, &mut self.scratch, out);
-        let limit = farthest(out);
-        hidden.iter().filter(|d2| **d2 < limit).count()
+    pub(crate) fn surroundings(&self) -> &'a Surroundings<'a> {
+        self.surroundings
     }
+
+    pub(crate) fn choice(&self) -> StarChoice {
+        self.choice
+    }
+
+    pub(crate) fn choose(&mut self, choice: StarChoice) {
+        self.choice = choice;
+    }
+
+    /// The star of `size` visible nodes of `node`, itself included, by number into `out` (fewer where there are no more);
+    /// returns how many hidden nodes were passed over.
+    pub fn find(&mut self, node: NodeId, size: usize, out: &mut Vec<NodeId>) -> usize {
+        let surroundings = self.surroundings;
+        let centre = surroundings.stretched()[node.index()];
+        let all_visible = |radius: f64| surroundings.all_visible(surroundings.xy()[node.index()], radius);
+        self.find_seen(centre, size, all_visible, |other| surroundings.sees(node, other), out)
+    }
+
+    /// The star of `size` visible nodes of the place `at` (user's coordinates), which need not be a node.
+    pub fn find_at(&mut self, at: Point, size: usize, out: &mut Vec<NodeId>) -> usize {
+        let surroundings = self.surroundings;
+        let centre = surroundings.metric().stretched(at);
+        let all_visible = |radius: f64| surroundings.all_visible(at, radius);
+        self.find_seen(centre, size, all_visible, |other| surroundings.sees_from(at, other), out)
+    }
+
+    fn find_seen(
+        &mut self,
+        centre: Point,
+        size: usize,
+        all_visible: impl Fn(f64) -> bool,
+        sees: impl Fn(NodeId) -> bool,
+        out: &mut Vec<NodeId>,
+    ) -> usize {
+        let places = self.surroundings.stretched();
+        let wanted = match self.choice {
+            StarChoice::Nearest => size,
+            StarChoice::Balanced => CANDIDATES * size,
+        };
+        let distance = |other: &NodeId| distance_squared(places[other.index()], centre);
+        let farthest = |out: &[NodeId]| out.iter().map(distance).fold(0.0f64, f64::max);
+        self.nearest.nearest(centre, wanted, |_| true, &mut self.scratch, out);
+        self.hidden.clear();
+        if !all_visible(farthest(out).sqrt()) {
+            let hidden = &mut self.hidden;
+            let accept = |other: NodeId| {
+                let visible = sees(other);
+                if !visible {
+                    hidden.push(distance(&other));
+                }
+                visible
+            };
+            self.nearest.nearest(centre, wanted, accept, &mut self.scratch, out);
+        }
+        if self.choice == StarChoice::Balanced {
+            self.balance(centre, size, out);
+        }
+        let limit = farthest(out);
+        self.hidden.iter().filter(|d2| **d2 < limit).count()
+    }
+
+    /// Of the nodes `out`, keeps `size`: from the nearest on those whose sector has not its share yet, then, where sectors
+    /// are empty, the nearest of the rest; by number.
+    fn balance(&mut self, centre: Point, size: usize, out: &mut Vec<NodeId>) {
+        let places = self.surroundings.stretched();
+        let distance = |node: &NodeId| distance_squared(places[node.index()], centre);
+        let candidates = &mut self.candidates;
+        candidates.clear();
+        candidates.append(out);
+        // Distances that differ by rounding alone are equal: then the number decides.
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME_DISTANCE_REL * a.max(b);
+        candidates.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        candidates.chunk_by_mut(|a, b| same(distance(a), distance(b))).for_each(|tied| tied.sort_unstable());
+        let share = size.saturating_sub(1).div_ceil(SECTORS);
+        let mut counts = [0; SECTORS];
+        candidates.retain(|node| {
+            let offset = sub(places[node.index()], centre);
+            let takes = out.len() < size && (offset == [0.0, 0.0] || counts[sector(offset)] < share);
+            if takes {
+                if offset != [0.0, 0.0] {
+                    counts[sector(offset)] += 1;
+                }
+                out.push(*node);
+            }
+            !takes
+        });
+        let missing = size.saturating_sub(out.len());
+        out.extend(candidates.iter().take(missing));
+        out.sort_unstable();
+    }
+}
+
+/// Squared distances within this fraction are equal, as in the search for nearest nodes.
+const SAME_DISTANCE_REL: f64 = 2.0e-9;
+
+/// Which of the eight sectors a direction lies in; sector 0 has the x-axis in its middle.
+fn sector([x, y]: Point) -> usize {
+    let eighths = (y.atan2(x) + FRAC_PI_8) / (2.0 * FRAC_PI_8);
+    (eighths.floor() as i64).rem_euclid(SECTORS as i64) as usize
 }

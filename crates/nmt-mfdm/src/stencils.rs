@@ -4,20 +4,36 @@ use crate::basis::n_monomials;
 use crate::error::MfdmError;
 use crate::mwls::Mwls;
 use crate::parallel::map_chunks;
-use crate::repair::{StarOutcome, sound_star};
-use crate::star::StarFinder;
+use crate::repair::{Demand, StarOutcome, sound_star};
+use crate::star::{StarChoice, StarFinder};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use std::ops::Range;
 
-/// Order and size of stars.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Order, size and choice of stars.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StarParams {
     /// Order p of the MWLS polynomial.
     pub order: usize,
     /// Nodes in a star, the centre included.
     pub size: usize,
+    /// How they are chosen.
+    pub choice: StarChoice,
+    /// g of the weight; 0 meets the centre's value exactly.
+    pub smoothing: f64,
+}
+
+impl StarParams {
+    /// The nearest `size` nodes, interpolating.
+    pub fn nearest(order: usize, size: usize) -> Self {
+        Self { order, size, choice: StarChoice::Nearest, smoothing: 0.0 }
+    }
+
+    /// Monomial of the first row: 1 where the centre's value is met exactly, otherwise 0.
+    fn first_row(&self) -> usize {
+        usize::from(self.smoothing == 0.0)
+    }
 }
 
 /// What became of the stars of a cloud.
@@ -33,29 +49,40 @@ pub struct StarReport {
     pub order_lowered: usize,
     /// Largest condition number of a star's system.
     pub worst_condition: f64,
+    /// Interior nodes whose own coefficient in their ∇² row has the wrong sign, at order 2.
+    pub wrong_sign: usize,
 }
 
 impl StarReport {
+    /// Takes in the stars of another part of the cloud.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.hidden_nodes_skipped += other.hidden_nodes_skipped;
+        self.enlarged += other.enlarged;
+        self.order_lowered += other.order_lowered;
+        self.worst_condition = self.worst_condition.max(other.worst_condition);
+        self.wrong_sign += other.wrong_sign;
+    }
+
     pub(crate) fn add(&mut self, outcome: &StarOutcome, order: usize) {
         self.hidden_nodes_skipped += outcome.hidden;
         self.enlarged += usize::from(outcome.enlarged);
         self.order_lowered += usize::from(outcome.order < order);
         self.worst_condition = self.worst_condition.max(outcome.condition);
+        self.wrong_sign += usize::from(outcome.wrong_sign);
     }
 }
 
 /// The stars of consecutive nodes and the rows of their derivatives.
 #[derive(Clone, Debug)]
 pub struct Stencils {
-    order: usize,
+    params: StarParams,
     metric: Metric,
     first: usize,       // number of the first node
     starts: Vec<usize>, // first star entry of each node, shape (n + 1,)
     nodes: Vec<NodeId>, // star after star, each ascending
-    rows: Vec<f64>,     // for a star of m nodes, (n_monomials − 1) rows of m, in scaled coordinates
+    rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<StarOutcome>,
-    size: usize,
 }
 
 /// The stencil of one node.
@@ -65,14 +92,21 @@ pub struct Stencil<'a> {
     pub nodes: &'a [NodeId],
     /// Radius of the star in stretched coordinates, user's length unit.
     pub radius: f64,
+    first_row: usize,
     rows: &'a [f64],
 }
 
 impl<'a> Stencil<'a> {
-    /// What each node contributes to derivative `m` (see [`crate::row`]; not 0, the value itself) at the centre in
+    /// What each node contributes to derivative `m` (see [`crate::row`]; at least [`Self::first_row`]) at the centre in
     /// scaled coordinates: multiply by (stretch_x/radius)^a·(stretch_y/radius)^b for ∂ᵃ⁺ᵇ/∂xᵃ∂yᵇ.
     pub fn row(&self, m: usize) -> &'a [f64] {
-        &self.rows[(m - 1) * self.nodes.len()..m * self.nodes.len()]
+        let k = m - self.first_row;
+        &self.rows[k * self.nodes.len()..(k + 1) * self.nodes.len()]
+    }
+
+    /// 1 where the polynomial meets the centre's value exactly, so that there is no row for it; 0 where it smooths.
+    pub fn first_row(&self) -> usize {
+        self.first_row
     }
 }
 
@@ -82,16 +116,18 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
-        let n_rows = n_monomials(params.order) - 1;
-        let (places, metric) = (surroundings.stretched(), surroundings.metric());
+        let n_rows = n_monomials(params.order) - params.first_row();
+        let metric = surroundings.metric();
         let first = range.start;
         let pieces = map_chunks(range, |piece| {
-            let mut finder = StarFinder::new(surroundings, nearest);
+            let mut finder = StarFinder::new(surroundings, nearest, params.choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
             let mut part = Self::empty(params, metric, piece.start);
+            let StarParams { order, size, smoothing, .. } = params;
             for node in piece {
-                let outcome =
-                    sound_star(&mut finder, &mut mwls, places, NodeId::of(node), params.order, params.size, &mut star);
+                let negative_diagonal = node >= surroundings.n_boundary();
+                let demand = Demand { order, size, smoothing, negative_diagonal };
+                let outcome = sound_star(&mut finder, &mut mwls, NodeId::of(node), demand, &mut star);
                 let before = part.rows.len();
                 if outcome.order > 0 {
                     mwls.rows(&mut part.rows);
@@ -116,6 +152,14 @@ impl Stencils {
         all
     }
 
+    /// A constant about each of `n_nodes` nodes, its value: blended, they are the linear interpolant of finite elements.
+    pub(crate) fn constants(n_nodes: usize) -> Self {
+        let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain(), 0);
+        stencils.starts = vec![0; n_nodes + 1];
+        stencils.radii = vec![1.0; n_nodes];
+        stencils
+    }
+
     /// Requires the stars of the nodes `range` to carry polynomials of `order`.
     ///
     /// # Errors
@@ -130,9 +174,19 @@ impl Stencils {
         }
     }
 
+    /// What became of the star of a node of the range.
+    pub fn outcome(&self, node: NodeId) -> StarOutcome {
+        self.outcomes.get(node.index() - self.first).copied().unwrap_or_default()
+    }
+
+    /// Numbers of the nodes that have a stencil.
+    pub fn range(&self) -> Range<usize> {
+        self.first..self.first + self.radii.len()
+    }
+
     fn empty(params: StarParams, metric: Metric, first: usize) -> Self {
         Self {
-            order: params.order,
+            params,
             metric,
             first,
             starts: vec![0],
@@ -140,7 +194,6 @@ impl Stencils {
             rows: Vec::new(),
             radii: Vec::new(),
             outcomes: Vec::new(),
-            size: params.size,
         }
     }
 
@@ -151,25 +204,32 @@ impl Stencils {
 
     /// Order of the polynomials.
     pub fn order(&self) -> usize {
-        self.order
+        self.params.order
+    }
+
+    /// True where polynomials meet the values at their own nodes.
+    pub(crate) fn interpolates(&self) -> bool {
+        self.params.first_row() == 1
     }
 
     /// The stencil of a node of the range.
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
         let k = node.index() - self.first;
         let star = self.starts[k]..self.starts[k + 1];
-        let n_rows = n_monomials(self.order) - 1;
+        let n_rows = n_monomials(self.params.order) - self.params.first_row();
         Stencil {
             nodes: &self.nodes[star.clone()],
             radius: self.radii[k],
+            first_row: self.params.first_row(),
             rows: &self.rows[n_rows * star.start..n_rows * star.end],
         }
     }
 
     /// What became of the stars.
     pub fn report(&self) -> StarReport {
-        let mut report = StarReport { size: self.size, ..StarReport::default() };
-        self.outcomes.iter().for_each(|outcome| report.add(outcome, self.order));
+        let mut report = StarReport { size: self.params.size, ..StarReport::default() };
+        // Constants have no stars.
+        self.outcomes.iter().for_each(|outcome| report.add(outcome, self.params.order));
         report
     }
 }

@@ -45,6 +45,11 @@ impl Metric {
         Self { stretch: [1.0, 1.0], ratio }
     }
 
+    /// The user's own coordinates.
+    pub(crate) fn plain() -> Self {
+        Self { stretch: [1.0; 2], ratio: 1.0 }
+    }
+
     /// Factors of x and y, each at least 1.
     pub fn stretch(&self) -> [f64; 2] {
         self.stretch
@@ -79,6 +84,7 @@ pub struct Surroundings<'a> {
     stretched: Vec<Point>,
     metric: Metric,
     visibility: Visibility,
+    n_boundary: usize,
 }
 
 impl<'a> Surroundings<'a> {
@@ -86,12 +92,17 @@ impl<'a> Surroundings<'a> {
     pub fn new(cloud: &'a Cloud) -> Self {
         let metric = Metric::of(cloud);
         let stretched = cloud.xy().iter().map(|p| metric.stretched(*p)).collect();
-        Self { xy: cloud.xy(), stretched, metric, visibility: Visibility::new(cloud) }
+        Self { xy: cloud.xy(), stretched, metric, visibility: Visibility::new(cloud), n_boundary: cloud.n_boundary() }
     }
 
     /// An index of the nodes by their stretched coordinates.
     pub fn nearest(&self) -> Nearest<'_> {
         Nearest::new(&self.stretched)
+    }
+
+    /// Nodes 0 … n_boundary − 1 lie on the boundary.
+    pub fn n_boundary(&self) -> usize {
+        self.n_boundary
     }
 
     /// Coordinates, shape (n_nodes, 2), user's length unit.
@@ -109,9 +120,14 @@ impl<'a> Surroundings<'a> {
         self.metric
     }
 
-    /// True where nothing hides nodes within the stretched distance `radius` of `node`: stretching only lengthens.
-    pub(crate) fn all_visible(&self, node: NodeId, radius: f64) -> bool {
-        self.visibility.all_within(self.xy[node.index()], radius)
+    /// True where nothing hides nodes within the stretched distance `radius` of `at`: stretching only lengthens.
+    pub(crate) fn all_visible(&self, at: Point, radius: f64) -> bool {
+        self.visibility.all_within(at, radius)
+    }
+
+    /// True where `node` is visible from the place `at` (user's coordinates) within the material.
+    pub fn sees_from(&self, at: Point, node: NodeId) -> bool {
+        self.visibility.sees_from(at, self.xy[node.index()])
     }
 
     /// True where `other` is visible from `centre`.

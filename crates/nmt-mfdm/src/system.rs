@@ -1,40 +1,87 @@
-//! The linear system of one problem: interior nodes are unknown, boundary nodes are known or share a hole's constant.
+//! The linear system of one problem: interior nodes are unknown, boundary nodes are known, share a hole's constant, or have
+//! a flux.
 
-use nmt_geom::{LoopId, NodeId};
+use crate::problem::HoleCondition;
+use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
 
 /// What a node's value is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Role {
     /// Unknown number so and so.
     Unknown(u32),
     /// The constant of hole number so and so (circulation).
     Hole(u32),
-    /// Zero: a Dirichlet node.
-    Zero,
+    /// Known: a Dirichlet node.
+    Known(f64),
+}
+
+/// What holds at a boundary node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum NodeCondition {
+    /// A Dirichlet value.
+    Value(f64),
+    /// The constant of a hole.
+    Hole(u32),
+    /// A flux is given: the value is free.
+    Flux,
+}
+
+/// How Dirichlet values enter the system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Dirichlet {
+    /// Known and holes' nodes are eliminated: polynomials meet the nodal values.
+    Eliminated,
+    /// Every node is unknown, and Σφ_j(x_b)·u_j = value is an equation of its own: polynomials smooth (g > 0).
+    Rows,
 }
 
 /// The role of every node: Dirichlet values are eliminated here and nowhere else.
 #[derive(Clone, Debug)]
 pub(crate) struct Roles {
-    boundary: Vec<Role>, // shape (n_boundary,)
-    /// Number of unknown nodal values: the interior nodes.
+    conditions: Vec<NodeCondition>, // shape (n_boundary,)
+    boundary: Vec<Role>,            // shape (n_boundary,)
+    unknown_nodes: Vec<NodeId>,     // of the boundary, ascending; all interior nodes follow
+    /// Number of unknown nodal values.
     pub n_unknowns: usize,
     /// Number of holes with an unknown constant.
     pub n_holes: usize,
 }
 
 impl Roles {
-    /// `free_holes`: each hole has an unknown constant; otherwise F = 0 on holes too.
-    pub fn new(mesh: &Mesh, free_holes: FreeHoles) -> Self {
-        let cloud = mesh.cloud();
-        let mut boundary = vec![Role::Zero; cloud.n_boundary()];
-        let n_holes = if free_holes == FreeHoles::Yes { cloud.boundary().n_loops() - 1 } else { 0 };
-        for hole in 0..n_holes {
-            let segments = cloud.boundary().loop_segments(LoopId::of(hole + 1));
-            segments.iter().for_each(|s| boundary[s.from.index()] = Role::Hole(hole as u32));
+    /// Roles by the condition at each boundary node; all interior nodes are unknown.
+    pub fn new(conditions: Vec<NodeCondition>, n_interior: usize, dirichlet: Dirichlet) -> Self {
+        let mut unknown_nodes = Vec::new();
+        let mut boundary = Vec::with_capacity(conditions.len());
+        let mut n_holes = 0;
+        for (node, condition) in conditions.iter().enumerate() {
+            if let NodeCondition::Hole(hole) = condition {
+                n_holes = n_holes.max(*hole as usize + 1);
+            }
+            boundary.push(match *condition {
+                NodeCondition::Value(value) if dirichlet == Dirichlet::Eliminated => Role::Known(value),
+                NodeCondition::Hole(hole) if dirichlet == Dirichlet::Eliminated => Role::Hole(hole),
+                _ => {
+                    unknown_nodes.push(NodeId::of(node));
+                    Role::Unknown(unknown_nodes.len() as u32 - 1)
+                }
+            });
         }
-        Self { boundary, n_unknowns: cloud.n_interior(), n_holes }
+        let n_unknowns = unknown_nodes.len() + n_interior;
+        Self { conditions, boundary, unknown_nodes, n_unknowns, n_holes }
+    }
+
+    /// The conditions of torsion: F = 0 on the outer boundary; on holes F = 0 too, or a constant each.
+    pub fn of_torsion(mesh: &Mesh, holes: HoleCondition) -> Vec<NodeCondition> {
+        let cloud = mesh.cloud();
+        let mut conditions = vec![NodeCondition::Value(0.0); cloud.n_boundary()];
+        if holes == HoleCondition::Circulation {
+            for hole in 0..cloud.boundary().n_loops() - 1 {
+                let segments = cloud.boundary().loop_segments(LoopId::of(hole + 1));
+                segments.iter().for_each(|s| conditions[s.from.index()] = NodeCondition::Hole(hole as u32));
+            }
+        }
+        conditions
     }
 
     /// The role of a node.
@@ -42,25 +89,39 @@ impl Roles {
     pub fn of(&self, node: NodeId) -> Role {
         match self.boundary.get(node.index()) {
             Some(role) => *role,
-            None => Role::Unknown((node.index() - self.boundary.len()) as u32),
+            None => Role::Unknown((node.index() - self.boundary.len() + self.unknown_nodes.len()) as u32),
         }
+    }
+
+    /// The node of unknown number `k`.
+    #[inline]
+    pub fn node(&self, k: usize) -> NodeId {
+        match self.unknown_nodes.get(k) {
+            Some(node) => *node,
+            None => NodeId::of(k - self.unknown_nodes.len() + self.boundary.len()),
+        }
+    }
+
+    /// The condition at a node; `None` inside.
+    pub fn condition(&self, node: NodeId) -> Option<NodeCondition> {
+        self.conditions.get(node.index()).copied()
+    }
+
+    /// Places of the unknowns, shape (n_unknowns, 2).
+    pub fn places(&self, xy: &[Point]) -> Vec<Point> {
+        (0..self.n_unknowns).map(|k| xy[self.node(k).index()]).collect()
     }
 }
 
-/// Whether holes have unknown constants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FreeHoles {
-    Yes,
-    No,
-}
-
-/// A linear functional of the nodal values, split by role; what meets a Dirichlet node is gone.
+/// A linear functional of the nodal values, split by role.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SplitRow {
     /// (unknown, coefficient), ascending.
     pub unknowns: Vec<(u32, f64)>,
     /// (hole, coefficient), each hole once.
     pub holes: Vec<(u32, f64)>,
+    /// What the known values contribute.
+    pub known: f64,
 }
 
 impl SplitRow {
@@ -73,9 +134,16 @@ impl SplitRow {
                 Some((_, total)) => *total += coefficient,
                 None => self.holes.push((k, coefficient)),
             },
-            Role::Zero => {}
+            Role::Known(value) => self.known += coefficient * value,
         }
     }
+}
+
+/// An equation: row · values = rhs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Equation {
+    pub row: SplitRow,
+    pub rhs: f64,
 }
 
 /// Sums coefficients by node, to be used again for the next row; O(entries).
@@ -104,14 +172,19 @@ impl RowSum {
 
     /// The row so far, by role; begins the next one.
     pub fn take(&mut self, roles: &Roles) -> SplitRow {
-        self.touched.sort_unstable();
         let mut row = SplitRow::default();
+        self.drain(|node, sum| row.add(roles.of(node), sum));
+        row
+    }
+
+    /// Hands over (node, sum) by ascending number; begins the next row.
+    pub fn drain(&mut self, mut to: impl FnMut(NodeId, f64)) {
+        self.touched.sort_unstable();
         for node in self.touched.drain(..) {
             let sum = std::mem::take(&mut self.sums[node as usize]);
             self.is_touched[node as usize] = false;
-            row.add(roles.of(NodeId(node)), sum);
+            to(NodeId(node), sum);
         }
-        row
     }
 }
 
@@ -140,16 +213,24 @@ impl LinearSystem {
         self.rhs.len()
     }
 
+    /// Collects equations in their order.
+    pub fn of(n_holes: usize, equations: impl Iterator<Item = Equation>) -> Self {
+        let mut system = Self::new(n_holes);
+        equations.for_each(|equation| system.push(&equation));
+        system
+    }
+
     /// Appends an equation.
-    pub fn push(&mut self, row: &SplitRow, rhs: f64) {
+    pub fn push(&mut self, equation: &Equation) {
         let number = self.rhs.len() as u32;
-        for &(column, value) in &row.unknowns {
+        for &(column, value) in &equation.row.unknowns {
             self.columns.push(column);
             self.values.push(value);
         }
-        row.holes.iter().for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
+        let holes = equation.row.holes.iter();
+        holes.for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
         self.row_starts.push(self.columns.len());
-        self.rhs.push(rhs);
+        self.rhs.push(equation.rhs - equation.row.known);
     }
 
     /// A·x.

@@ -1,36 +1,35 @@
-//! The variational formulation: blended trial functions, linear hats as test functions; paper, eq. (18) \[D13\].
+//! The variational formulation with linear hats as test functions, and linear finite elements; paper, eq. (18) \[D13\].
 
+use crate::assembly::{Setting, dirichlet_row};
 use crate::blend::barycentric_gradients;
+use crate::error::MfdmError;
 use crate::parallel::map_chunks;
-use crate::stencils::Stencils;
-use crate::system::{LinearSystem, Roles, RowSum, SplitRow};
+use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::{NodeId, TriId};
-use nmt_tri::{Mesh, NodeTris};
+use nmt_tri::Mesh;
 
-/// One equation a interior node: ∫∇F·∇v = 2∫v (Gθ = 1) with the node's hat v.
-pub(crate) fn assemble(mesh: &Mesh, stencils: &Stencils, node_tris: &NodeTris, roles: &Roles) -> LinearSystem {
-    struct Equation {
-        row: SplitRow,
-        rhs: f64,
-    }
+/// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
+pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
+    let Setting { mesh, roles, node_tris, source, fluxes, .. } = setting;
     let n_nodes = mesh.cloud().n_nodes();
-    let weak = WeakForm::new(mesh, stencils);
-    let pieces = map_chunks(mesh.cloud().n_boundary()..n_nodes, |piece| {
+    let pieces = map_chunks(0..roles.n_unknowns, |piece| {
         let (mut sum, mut gathered) = (RowSum::new(n_nodes), Gathered::default());
-        let equation = |node: usize| {
-            let tris = node_tris.around(NodeId::of(node));
-            let slopes = tris.iter().map(|&t| (t, hat_slope(mesh, t, NodeId::of(node))));
+        let equation = |k: usize| {
+            let node = roles.node(k);
+            if let Some(equation) = dirichlet_row(setting, node, &mut sum)? {
+                return Ok(equation);
+            }
+            let around = node_tris.around(node);
+            let slopes = around.iter().map(|&t| (t, hat_slope(mesh, t, node)));
             weak.add(slopes, &mut gathered, &mut sum);
-            // ∫v is a third of the areas around; twice that on the right.
-            let rhs = tris.iter().map(|&t| mesh.area(t)).sum::<f64>() * 2.0 / 3.0;
-            Equation { row: sum.take(roles), rhs }
+            let rhs = source.with_hat(mesh, &setting.source_rule, fluxes, node, around)?;
+            Ok(Equation { row: sum.take(roles), rhs })
         };
-        piece.map(equation).collect::<Vec<_>>()
+        piece.map(equation).collect::<Result<Vec<_>, MfdmError>>()
     });
-    let mut system = LinearSystem::new(roles.n_holes);
-    pieces.into_iter().flatten().for_each(|equation| system.push(&equation.row, equation.rhs));
-    system
+    let equations = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(LinearSystem::of(roles.n_holes, equations.into_iter().flatten()))
 }
 
 /// Gradient on `triangle` of the hat of one of its nodes.

@@ -66,6 +66,11 @@ impl Visibility {
         !(both_on_boundary && self.outside_between(xy, centre, other))
     }
 
+    /// True where `node` is visible from a place within the material that is none.
+    pub fn sees_from(&self, at: Point, node: Point) -> bool {
+        !self.blocked(at, node)
+    }
+
     /// True where the open segment `p q` crosses the real boundary, at a segment or at a node between two of them.
     fn blocked(&self, p: Point, q: Point) -> bool {
         let direction = sub(q, p);

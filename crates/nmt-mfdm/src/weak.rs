@@ -1,23 +1,45 @@
-//! ∫∇F·∇v over the triangles, F the blend of the nodal polynomials, v linear on each triangle; paper, eq. (18) \[D13\].
+//! ∫∇F·∇v over the triangles, F the trial function, v linear on each triangle; paper, eq. (18) \[D13\].
 //!
 //! The left side of the variational form (v a hat) and of the circulation on holes (v one around a hole) alike.
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::blend::barycentric_gradients;
-use crate::gauss::{Rule, three_points};
+use crate::error::MfdmError;
+use crate::flux::Fluxes;
+use crate::gauss::Rule;
+use crate::parallel::map_chunks;
+use crate::problem::Trial;
+use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::stencils::Stencils;
 use crate::system::RowSum;
 use nmt_geom::{NodeId, TriId};
-use nmt_tri::Mesh;
+use nmt_tri::{Mesh, barycentric};
 
 /// What a nodal polynomial contributes by its Taylor coefficients.
 type Moments = [f64; MAX_MONOMIALS];
 
-/// Integrates the weak form for the polynomials of `stencils`.
+/// Integrates the weak form.
 pub(crate) struct WeakForm<'a> {
     mesh: &'a Mesh,
-    stencils: &'a Stencils,
-    rule: Rule,
+    fluxes: &'a Fluxes,
+    rule: &'a Rule,
+    trial: TrialGradients<'a>,
+}
+
+/// Where the gradient of the trial function comes from.
+enum TrialGradients<'a> {
+    /// From the nodal polynomials.
+    Blended(&'a Stencils),
+    /// ∫∇φ_j over each triangle, computed before.
+    Integrated(Vec<Integrals>),
+}
+
+/// ∫∇φ_j over one triangle, by node.
+#[derive(Clone, Debug, Default)]
+struct Integrals {
+    nodes: Vec<NodeId>,
+    by_x: Vec<f64>,
+    by_y: Vec<f64>,
 }
 
 /// Room for one row, to be used again for the next.
@@ -28,26 +50,84 @@ pub(crate) struct Gathered {
 }
 
 impl<'a> WeakForm<'a> {
-    /// Three Gauss points are exact for order 2: the gradient of the blend is then quadratic.
-    pub fn new(mesh: &'a Mesh, stencils: &'a Stencils) -> Self {
-        Self { mesh, stencils, rule: three_points() }
+    /// The blend of the polynomials of `stencils`.
+    pub fn blended(mesh: &'a Mesh, stencils: &'a Stencils, fluxes: &'a Fluxes, rule: &'a Rule) -> Self {
+        Self { mesh, fluxes, rule, trial: TrialGradients::Blended(stencils) }
+    }
+
+    /// The trial functions of `space`.
+    ///
+    /// # Errors
+    /// [`MfdmError::PoorPlace`] where a Gauss point's star carries no polynomial.
+    pub fn new(space: TrialSpace<'a>, fluxes: &'a Fluxes, rule: &'a Rule) -> Result<Self, MfdmError> {
+        let mesh = space.mesh;
+        if space.kind == Trial::Blended {
+            return Ok(Self::blended(mesh, space.stencils, fluxes, rule));
+        }
+        let pieces = map_chunks(0..mesh.n_triangles(), |piece| {
+            let (mut finder, mut shapes) = (ShapeFinder::new(space), Shapes::default());
+            let mut sums = [0, 1].map(|_| RowSum::new(mesh.cloud().n_nodes()));
+            let mut integrals = Vec::with_capacity(piece.len());
+            for t in piece.map(TriId::of) {
+                for (p, weight) in places(mesh, rule, fluxes, t) {
+                    finder.at(t, p, &mut shapes)?;
+                    for (k, &node) in shapes.nodes.iter().enumerate() {
+                        sums[0].add(node, weight * shapes.by_x[k]);
+                        sums[1].add(node, weight * shapes.by_y[k]);
+                    }
+                }
+                let mut own = Integrals::default();
+                sums[0].drain(|node, sum| {
+                    own.nodes.push(node);
+                    own.by_x.push(sum);
+                });
+                sums[1].drain(|_, sum| own.by_y.push(sum));
+                integrals.push(own);
+            }
+            Ok(integrals)
+        });
+        let integrals = pieces.into_iter().collect::<Result<Vec<_>, MfdmError>>()?;
+        let trial = TrialGradients::Integrated(integrals.into_iter().flatten().collect());
+        Ok(Self { mesh, fluxes, rule, trial })
     }
 
     /// Adds ∫∇F·∇v for the v whose constant gradient is `slope(t, k)` of the triangles given: the row of coefficients of
     /// the nodal values.
     pub fn add(&self, triangles: impl Iterator<Item = (TriId, [f64; 2])>, gathered: &mut Gathered, sum: &mut RowSum) {
+        match &self.trial {
+            TrialGradients::Blended(stencils) => self.add_blended(stencils, triangles, gathered, sum),
+            TrialGradients::Integrated(integrals) => {
+                for (triangle, slope) in triangles {
+                    let Integrals { nodes, by_x, by_y } = &integrals[triangle.index()];
+                    for (k, &node) in nodes.iter().enumerate() {
+                        sum.add(node, slope[0] * by_x[k] + slope[1] * by_y[k]);
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_blended(
+        &self,
+        stencils: &Stencils,
+        triangles: impl Iterator<Item = (TriId, [f64; 2])>,
+        gathered: &mut Gathered,
+        sum: &mut RowSum,
+    ) {
         gathered.nodes.clear();
         gathered.moments.clear();
         for (triangle, slope) in triangles {
             for corner in 0..3 {
-                self.gather(triangle, corner, slope, gathered);
+                self.gather(stencils, triangle, corner, slope, gathered);
             }
         }
-        let n = n_monomials(self.stencils.order());
+        let n = n_monomials(stencils.order());
         for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
-            sum.add(node, moments[0]);
-            let stencil = self.stencils.of(node);
-            for (m, moment) in moments.iter().enumerate().take(n).skip(1) {
+            if stencils.interpolates() {
+                sum.add(node, moments[0]);
+            }
+            let stencil = stencils.of(node);
+            for (m, moment) in moments.iter().enumerate().take(n).skip(stencil.first_row()) {
                 for (&other, coefficient) in stencil.nodes.iter().zip(stencil.row(m)) {
                     sum.add(other, moment * coefficient);
                 }
@@ -55,13 +135,13 @@ impl<'a> WeakForm<'a> {
         }
     }
 
-    /// Adds ∫ slope·∇(λ_a φ_m) over the triangle for every monomial φ_m of corner a.
-    fn gather(&self, triangle: TriId, corner: usize, slope: [f64; 2], gathered: &mut Gathered) {
+    /// Adds ∫ slope·∇(λ_a φ_m) over the triangle, and the slivers at its segments, for every monomial φ_m of corner a.
+    fn gather(&self, stencils: &Stencils, triangle: TriId, corner: usize, slope: [f64; 2], gathered: &mut Gathered) {
         let corners = self.mesh.corners(triangle);
         let node = self.mesh.tri_nodes()[triangle.index()][corner];
-        let radius = self.stencils.of(node).radius;
-        let [s_x, s_y] = self.stencils.metric().stretch().map(|stretch| stretch / radius);
-        let order = self.stencils.order();
+        let radius = stencils.of(node).radius;
+        let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch / radius);
+        let order = stencils.order();
         let area = self.mesh.area(triangle);
         let lambda_slope = barycentric_gradients(corners)[corner];
         let along = slope[0] * lambda_slope[0] + slope[1] * lambda_slope[1];
@@ -73,10 +153,10 @@ impl<'a> WeakForm<'a> {
         });
         let moments = &mut gathered.moments[slot];
         let mut basis = [0.0; MAX_MONOMIALS];
-        for (lambda, weight) in self.rule.points.iter().zip(&self.rule.weights) {
+        let mut add = |lambda: &[f64; 3], weight: f64| {
             let offset = |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>();
             monomials([offset(0) * s_x, offset(1) * s_y], order, &mut basis);
-            let (value_part, slope_part) = (weight * area * along, weight * area * lambda[corner]);
+            let (value_part, slope_part) = (weight * along, weight * lambda[corner]);
             for degree in 0..=order {
                 for b in 0..=degree {
                     let a = degree - b;
@@ -85,6 +165,29 @@ impl<'a> WeakForm<'a> {
                     moments[row(a, b)] += value_part * basis[row(a, b)] + slope_part * (by_x + by_y);
                 }
             }
+        };
+        for (lambda, weight) in self.rule.points.iter().zip(&self.rule.weights) {
+            add(lambda, weight * area);
+        }
+        if !self.fluxes.slivers.is_empty() {
+            for sample in Fluxes::of_triangle(&self.fluxes.slivers, triangle) {
+                add(&barycentric(corners, sample.at), sample.weight);
+            }
         }
     }
+}
+
+/// The Gauss points of a triangle and of the slivers at its segments, with their weights (areas).
+pub(crate) fn places<'m>(
+    mesh: &'m Mesh,
+    rule: &'m Rule,
+    fluxes: &'m Fluxes,
+    triangle: TriId,
+) -> impl Iterator<Item = ([f64; 2], f64)> + 'm {
+    let (corners, area) = (mesh.corners(triangle), mesh.area(triangle));
+    let own = rule.points.iter().zip(&rule.weights).map(move |(lambda, weight)| {
+        let at = |d: usize| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>();
+        ([at(0), at(1)], weight * area)
+    });
+    own.chain(Fluxes::of_triangle(&fluxes.slivers, triangle).iter().map(|sample| (sample.at, sample.weight)))
 }

@@ -239,7 +239,7 @@ pub fn solutions(
             load: problem.solve.load,
             holes: problem.solve.holes,
         };
-        let params = SolveParams { formulation, star: problem.solve.star };
+        let params = SolveParams { formulation, star: problem.solve.star, ..SolveParams::default() };
         let mut ended = |stage: nmt_mfdm::Stage| observer(k, stage.into());
         let solution = solve_observed(&torsion, &part.mesh, &params, &mut ended)
             .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;

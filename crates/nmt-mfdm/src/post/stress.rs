@@ -1,7 +1,6 @@
 //! Shear stresses; paper, eq. (16).
 
 use crate::blend::NodalPolynomials;
-use crate::gauss::six_points;
 use nmt_tri::Mesh;
 
 /// Shear stresses at a point, in units of G.
@@ -36,9 +35,9 @@ pub struct StressIntegral {
     pub magnitude: f64,
 }
 
-/// Integrals of the stresses of the blend over every triangle: six Gauss points, exact for τ_zx and τ_zy of order 3.
+/// Integrals of the stresses of the blend over every triangle, exact for τ_zx and τ_zy.
 pub fn stress_integrals(mesh: &Mesh, field: &NodalPolynomials) -> Vec<StressIntegral> {
-    let rule = six_points();
+    let rule = field.rule();
     mesh.triangles()
         .map(|t| StressIntegral {
             zx: field.integrate(mesh, t, &rule, |v| v.gradient[1]),

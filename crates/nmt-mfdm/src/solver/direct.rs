@@ -227,7 +227,7 @@ pub(crate) fn solve_dense(rows: &[Vec<f64>], b: &[f64]) -> Result<Vec<f64>, Mfdm
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Role, SplitRow};
+    use crate::system::{Equation, Role, SplitRow};
 
     fn tridiagonal(n: u32) -> LinearSystem {
         let mut system = LinearSystem::new(0);
@@ -240,7 +240,7 @@ mod tests {
             if i + 1 < n {
                 row.add(Role::Unknown(i + 1), -1.2);
             }
-            system.push(&row, f64::from(i));
+            system.push(&Equation { row, rhs: f64::from(i) });
         }
         system
     }
@@ -270,7 +270,7 @@ mod tests {
             let mut row = SplitRow::default();
             row.add(Role::Unknown(0), 1.0);
             row.add(Role::Unknown(1), 1.0);
-            system.push(&row, 1.0);
+            system.push(&Equation { row, rhs: 1.0 });
         }
         system.rhs[1] = 2.0;
         assert!(solve(&system, &line(2), &[system.rhs.clone()]).is_err());

@@ -27,7 +27,7 @@ fn circulation(mesh: &Mesh, solution: &TorsionSolution, centre: Point, radius: f
 fn the_circulation_about_every_hole_is_twice_the_area_it_encloses() {
     let plate =
         Section { contour: Outline::rectangle([0.0, 0.0], [2.0, 2.0]), holes: vec![Outline::circle([1.0, 1.0], 0.5)] };
-    for formulation in Formulation::ALL {
+    for formulation in Formulation::MESHLESS {
         for irregularity in [0.0, 0.25] {
             let mesh_of = |section: &Section, nodes| mesh(section, &params(nodes, irregularity, 2));
             let what = format!("{} {irregularity}", formulation.name());
@@ -53,7 +53,7 @@ fn the_circulation_about_every_hole_is_twice_the_area_it_encloses() {
 fn every_hole_has_one_constant_that_all_its_nodes_share() {
     let mesh = mesh(&holed_l(1.0, [0.0, 0.0]), &params([46, 31], 0.2, 1));
     let boundary = mesh.cloud().boundary();
-    for formulation in Formulation::ALL {
+    for formulation in Formulation::MESHLESS {
         let solution = solved(&mesh, formulation);
         assert_eq!(solution.unknowns, mesh.cloud().n_interior() + 2);
         for (k, hole) in solution.holes.iter().enumerate() {
@@ -70,7 +70,7 @@ fn every_hole_has_one_constant_that_all_its_nodes_share() {
 #[test]
 fn the_constant_of_the_ring_is_that_of_the_full_circle() {
     let case = ring();
-    for formulation in Formulation::ALL {
+    for formulation in Formulation::MESHLESS {
         let solution = solved(&mesh(&case.section, &params([31, 31], 0.3, 4)), formulation);
         assert!((solution.holes[0].f - 0.375).abs() < 1e-12); // (1 − ¼)/2, quadratic: rounding
     }
@@ -84,7 +84,7 @@ fn a_hole_with_the_zero_condition_has_f_0_and_the_volume_of_the_membrane_with_a_
     let k = -(1.0 - a * a) / (2.0 * a.ln());
     let quarter = 1.0 / 8.0 - a * a / 4.0 + a.powi(4) / 8.0;
     let j = 4.0 * PI * (quarter + k * (-0.25 - a * a / 2.0 * a.ln() + a * a / 4.0));
-    for formulation in Formulation::ALL {
+    for formulation in Formulation::MESHLESS {
         for irregularity in [0.0, 0.25] {
             let mesh = mesh(&case.section, &params([61, 61], irregularity, 1));
             let problem = TorsionProblem { holes: HoleCondition::Zero, ..TorsionProblem::default() };

@@ -5,7 +5,7 @@ use nmt_cloud::{Cloud, Section};
 use nmt_curve::Outline;
 use nmt_geom::point::distance;
 use nmt_geom::{NodeId, Point, segment};
-use nmt_mfdm::{StarFinder, StarParams, Stencils, Surroundings, n_monomials, row};
+use nmt_mfdm::{StarChoice, StarFinder, StarParams, Stencils, Surroundings, n_monomials, row};
 use nmt_tri::Mesh;
 use proptest::prelude::*;
 
@@ -27,7 +27,7 @@ fn slotted(width: f64) -> Section {
 fn stars(cloud: &Cloud, size: usize) -> Vec<Vec<NodeId>> {
     let surroundings = Surroundings::new(cloud);
     let nearest = surroundings.nearest();
-    let mut finder = StarFinder::new(&surroundings, &nearest);
+    let mut finder = StarFinder::new(&surroundings, &nearest, StarChoice::Nearest);
     let mut star = Vec::new();
     (0..cloud.n_nodes())
         .map(|node| {
@@ -163,8 +163,8 @@ fn rows_reproduce_quadratics_and_cubics_on_irregular_clouds_with_holes() {
     for section in [holed_l(1.0, [0.0, 0.0]), slotted(0.3), keyway().section] {
         for (irregularity, seed) in [(0.0, 0), (0.25, 1), (0.45, 2)] {
             let mesh = mesh(&section, &params([46, 31], irregularity, seed));
-            assert_reproduces(&mesh, StarParams { order: 2, size: 9 });
-            assert_reproduces(&mesh, StarParams { order: 3, size: 20 });
+            assert_reproduces(&mesh, StarParams::nearest(2, 9));
+            assert_reproduces(&mesh, StarParams::nearest(3, 20));
         }
     }
 }

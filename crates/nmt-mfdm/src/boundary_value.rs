@@ -1,0 +1,182 @@
+//! A boundary value problem −∇²u = s on a mesh: stencils → system → nodal values → recovered field.
+
+use crate::assembly::Setting;
+use crate::blend::NodalPolynomials;
+use crate::circulation::hole_equations;
+use crate::diagnostics::{StarDiagnostics, diagnose};
+use crate::error::MfdmError;
+use crate::flux::Fluxes;
+use crate::gauss::Rule;
+use crate::params::SolveParams;
+use crate::problem::{Formulation, Test};
+use crate::shapes::TrialSpace;
+use crate::solve::Stage;
+use crate::solver::direct;
+use crate::source::Source;
+use crate::star::default_star;
+use crate::stencils::{StarParams, StarReport, Stencils};
+use crate::surroundings::Surroundings;
+use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
+use crate::weak::WeakForm;
+use crate::{galerkin, local, variational};
+use nmt_geom::{NodeId, Point};
+use nmt_tri::{Mesh, NodeTris};
+
+/// Gauss points that integrate a source that is not constant: exact to degree 4 for orders 1 and 2, to degree 6 above.
+const SOURCE_POINTS: [usize; 2] = [6, 12];
+
+/// What is solved.
+pub(crate) struct Discrete<'a> {
+    pub mesh: &'a Mesh,
+    /// At each boundary node.
+    pub conditions: Vec<NodeCondition>,
+    pub source: Source<'a>,
+    pub fluxes: &'a Fluxes,
+}
+
+/// What came of it.
+pub(crate) struct Solved {
+    /// u at the nodes.
+    pub values: Vec<f64>,
+    /// Of each hole with a circulation.
+    pub constants: Vec<f64>,
+    pub field: NodalPolynomials,
+    pub residual: f64,
+    pub unknowns: usize,
+    pub stars: StarReport,
+    pub diagnostics: Vec<StarDiagnostics>,
+}
+
+/// Solves a problem by the direct solver and recovers the field.
+///
+/// # Errors
+/// [`MfdmError`] where a parameter is out of range, a star cannot carry its polynomial, or the system is singular.
+pub(crate) fn solve_discrete(
+    discrete: Discrete,
+    params: &SolveParams,
+    ended: &mut dyn FnMut(Stage),
+) -> Result<Solved, MfdmError> {
+    params.check()?;
+    let Discrete { mesh, conditions, source, fluxes } = discrete;
+    let surroundings = Surroundings::new(mesh.cloud());
+    let metric = surroundings.metric();
+    let nearest = surroundings.nearest();
+    let (n_nodes, n_boundary) = (mesh.cloud().n_nodes(), mesh.cloud().n_boundary());
+    let interpolates = params.smoothing == 0.0 || params.formulation == Formulation::Fem;
+    let dirichlet = if interpolates { Dirichlet::Eliminated } else { Dirichlet::Rows };
+    let roles = Roles::new(conditions, mesh.cloud().n_interior(), dirichlet);
+
+    let stencils = if params.formulation == Formulation::Fem {
+        Stencils::constants(n_nodes)
+    } else {
+        let stars = params.star_params(n_nodes, &metric)?;
+        // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
+        let only_interior =
+            params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
+        let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
+        let stencils = Stencils::new(&surroundings, &nearest, stars, range.clone());
+        stencils.require(range, mesh.xy(), 1)?;
+        if params.formulation == Formulation::Local {
+            stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
+        }
+        stencils
+    };
+    let stars = stencils.report();
+    let diagnostics = diagnose(&surroundings, &stencils);
+    ended(Stage::Stencils);
+
+    let rule = params.rule()?;
+    let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
+    let source_rule = Rule::of(SOURCE_POINTS[usize::from(params.order > 2)]).unwrap_or_else(crate::gauss::six_points);
+    let setting =
+        Setting { mesh, stencils: &stencils, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule };
+    let space = TrialSpace {
+        kind: params.trial,
+        mesh,
+        stencils: &stencils,
+        surroundings: &surroundings,
+        nearest: &nearest,
+        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+    };
+    let weak = match params.formulation {
+        Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
+        Formulation::Local | Formulation::Fem => WeakForm::blended(mesh, &stencils, fluxes, &rule),
+    };
+    let system = match (params.formulation, params.test) {
+        (Formulation::Local, _) => local::assemble(&setting)?,
+        (Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
+        (Formulation::Variational, Test::Hat) | (Formulation::Fem, _) => variational::assemble(&setting, &weak)?,
+    };
+    let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
+    drop(weak);
+    ended(Stage::Assemble);
+
+    let Nodal { values, constants, residual } = solve_system(&system, mesh.xy(), &equations, &roles)?;
+    drop(system);
+    let values = if interpolates { values } else { smoothed(&stencils, values) };
+    drop(stencils);
+    ended(Stage::Solve);
+
+    let field = if params.formulation == Formulation::Fem {
+        NodalPolynomials::linear(mesh, &values)
+    } else {
+        let order = params.recovery_order();
+        let recovery =
+            StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
+        NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?
+    };
+    Ok(Solved { values, constants, field, residual, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
+}
+
+/// The values of smoothing polynomials at their nodes, from the parameters.
+fn smoothed(stencils: &Stencils, parameters: Vec<f64>) -> Vec<f64> {
+    let value = |node: usize| {
+        let stencil = stencils.of(NodeId::of(node));
+        stencil.nodes.iter().zip(stencil.row(0)).map(|(other, c)| c * parameters[other.index()]).sum()
+    };
+    (0..parameters.len()).map(value).collect()
+}
+
+/// Nodal values.
+struct Nodal {
+    values: Vec<f64>,
+    constants: Vec<f64>,
+    residual: f64,
+}
+
+/// F = F_0 + Σ c_k F_k with one factorisation; the holes' equations give the c_k.
+fn solve_system(
+    system: &LinearSystem,
+    xy: &[Point],
+    equations: &[Equation],
+    roles: &Roles,
+) -> Result<Nodal, MfdmError> {
+    let mut right_sides = vec![system.rhs.clone()];
+    for column in &system.hole_columns {
+        let mut b = vec![0.0; system.n()];
+        column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
+        right_sides.push(b);
+    }
+    let direct::Solutions { x, residual } = direct::solve(system, &roles.places(xy), &right_sides)?;
+    let along = |equation: &Equation, x: &[f64]| -> f64 {
+        equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
+    };
+    let mut matrix = Vec::with_capacity(equations.len());
+    let mut b = Vec::with_capacity(equations.len());
+    for equation in equations {
+        let mut row: Vec<f64> = x[1..].iter().map(|x| along(equation, x)).collect();
+        equation.row.holes.iter().for_each(|&(hole, coefficient)| row[hole as usize] += coefficient);
+        matrix.push(row);
+        b.push(equation.rhs - equation.row.known - along(equation, &x[0]));
+    }
+    let constants = if equations.is_empty() { Vec::new() } else { direct::solve_dense(&matrix, &b)? };
+    let value = |node: usize| match roles.of(NodeId::of(node)) {
+        Role::Known(value) => value,
+        Role::Hole(hole) => constants[hole as usize],
+        Role::Unknown(k) => {
+            let parts = constants.iter().zip(&x[1..]).map(|(c, x)| c * x[k as usize]);
+            x[0][k as usize] + parts.sum::<f64>()
+        }
+    };
+    Ok(Nodal { values: (0..xy.len()).map(value).collect(), constants, residual })
+}

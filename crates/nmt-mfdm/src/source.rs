@@ -1,0 +1,65 @@
+//! The right side of −∇²u = s, and its integrals with the hats.
+
+use crate::error::MfdmError;
+use crate::flux::Fluxes;
+use crate::gauss::Rule;
+use crate::weak::places;
+use nmt_geom::{NodeId, Point, TriId};
+use nmt_tri::{Mesh, barycentric};
+
+/// s of −∇²u = s.
+#[derive(Clone, Copy)]
+pub(crate) enum Source<'a> {
+    /// The same everywhere: 2 for torsion with Gθ = 1.
+    Constant(f64),
+    /// −f of ∇²u = f.
+    Minus(&'a (dyn Fn(Point) -> f64 + Sync)),
+}
+
+impl Source<'_> {
+    /// s at a place.
+    ///
+    /// # Errors
+    /// [`MfdmError::Datum`] where it is not finite.
+    pub fn at(&self, p: Point) -> Result<f64, MfdmError> {
+        match self {
+            Self::Constant(value) => Ok(*value),
+            Self::Minus(f) => {
+                let value = f(p);
+                if value.is_finite() { Ok(-value) } else { Err(MfdmError::Datum { quantity: "source", at: p, value }) }
+            }
+        }
+    }
+
+    /// ∫s·v + ∫q·v of the hat v of a node, over the triangles around it.
+    ///
+    /// # Errors
+    /// As [`Self::at`].
+    pub fn with_hat(
+        &self,
+        mesh: &Mesh,
+        rule: &Rule,
+        fluxes: &Fluxes,
+        node: NodeId,
+        around: &[TriId],
+    ) -> Result<f64, MfdmError> {
+        let mut sum = 0.0;
+        for &t in around {
+            let corners = mesh.corners(t);
+            let corner = mesh.tri_nodes()[t.index()].iter().position(|n| *n == node).unwrap_or(0);
+            match self {
+                // ∫v is a third of the triangle's area.
+                Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * mesh.area(t) / 3.0,
+                _ => {
+                    for (p, weight) in places(mesh, rule, fluxes, t) {
+                        sum += weight * self.at(p)? * barycentric(corners, p)[corner];
+                    }
+                }
+            }
+            for sample in Fluxes::of_triangle(&fluxes.edges, t) {
+                sum += sample.weight * barycentric(corners, sample.at)[corner];
+            }
+        }
+        Ok(sum)
+    }
+}
