@@ -10,11 +10,15 @@ import subprocess
 import sys
 import xml.etree.ElementTree
 
+import check_msh
+import gmsh
 import meshio
 import numpy as np
 
 nmt, problems, out = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
 checked = 0
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Terminal", 0)
 
 
 def expect(condition, message):
@@ -24,14 +28,18 @@ def expect(condition, message):
         sys.exit(f"check_files: {message}")
 
 
+def rows_of(file):
+    with open(file, newline="") as opened:
+        return list(csv.DictReader(opened))
+
+
 for problem in sorted(problems.glob("*.toml")):
     where = out / problem.stem
     subprocess.run([nmt, "solve", problem, "--out", where, "--json"], check=True, capture_output=True)
     report = json.loads((where / "report.json").read_text())
     mesh = meshio.read(where / "mesh.vtu")
     triangles = mesh.cells_dict["triangle"]
-    with open(where / "nodes.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(where / "nodes.csv")
 
     expect(len(mesh.points) == len(rows) == report["totals"]["nodes"], f"{problem}: numbers of nodes differ")
     expect(set(mesh.point_data) == {"node", "kind", "F", "tau_zx", "tau_zy", "tau"}, f"{problem}: point data")
@@ -60,6 +68,8 @@ for problem in sorted(problems.glob("*.toml")):
         torque = 2 * (f * areas[own]).sum() + 2 * holes
         expect(abs(torque / subdomain["torque"] - 1) < (0.1 if subdomain["nodes"] > 200 else 0.15), f"{problem}: torque {torque} against {subdomain['torque']}")
 
+    check_msh.check(where / "mesh.msh", [part["name"] for part in report["subdomains"]], rows, mesh, expect)
+
     for picture in ("nodes", "mesh", "solution"):
         root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
         expect(root.tag.endswith("svg"), f"{problem}: {picture}.svg is no SVG")
@@ -67,5 +77,19 @@ for problem in sorted(problems.glob("*.toml")):
         width, height = struct.unpack(">II", head[16:24])
         expect(head[:8] == b"\x89PNG\r\n\x1a\n" and min(width, height) > 200, f"{problem}: {picture}.png")
 
+# Several subdomains, with and without nodes in common, of a mesh and of a solution.
+for name, text, is_welded in (("welded", check_msh.WELDED, True), ("separate", check_msh.SEPARATE, False)):
+    problem = out / f"{name}.toml"
+    problem.write_text(text)
+    for command in ("mesh", "solve"):
+        where = out / f"{name}-{command}"
+        subprocess.run([nmt, command, problem, "--out", where, "--json"], check=True, capture_output=True)
+        names = [part["name"] for part in json.loads((where / "report.json").read_text())["subdomains"]]
+        found = check_msh.check(where / "mesh.msh", names, rows_of(where / "nodes.csv"), meshio.read(where / "mesh.vtu"), expect)
+        expect(found == is_welded, f"{where}: welded is {found}")
+        groups = [gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups(1)]
+        expect(check_msh.INTERFACES <= set(groups), f"{where}: common edges among {groups}")
+
+gmsh.finalize()
 expect(checked > 100, "no problem was found")
 print(f"{checked} passed, 0 failed")

@@ -74,8 +74,17 @@ fn every_file_is_the_same_to_the_bit_for_one_and_two_threads_and_in_two_runs() {
         assert_eq!(nmt_with_threads(&arguments, threads).status.code(), Some(0));
         out
     });
-    let names =
-        ["nodes.csv", "mesh.vtu", "nodes.svg", "mesh.svg", "solution.svg", "nodes.png", "mesh.png", "solution.png"];
+    let names = [
+        "nodes.csv",
+        "mesh.vtu",
+        "mesh.msh",
+        "nodes.svg",
+        "mesh.svg",
+        "solution.svg",
+        "nodes.png",
+        "mesh.png",
+        "solution.png",
+    ];
     let read = |run: &PathBuf, name: &str| std::fs::read(run.join(name)).expect("a result");
     for run in &runs[1..] {
         for name in names {
@@ -96,6 +105,7 @@ fn nodes_and_mesh_stop_earlier_and_write_their_own_files() {
             &[
                 "nodes.csv",
                 "mesh.vtu",
+                "mesh.msh",
                 "nodes.svg",
                 "nodes.png",
                 "quality.svg",

@@ -1,7 +1,9 @@
 //! Files that other tools open: one format a file.
 
 mod csv;
+mod msh;
 mod vtu;
 
 pub use csv::{csv_of_clouds, csv_of_solutions};
+pub use msh::{msh_of_meshes, msh_of_solutions};
 pub use vtu::{vtu_of_meshes, vtu_of_solutions};

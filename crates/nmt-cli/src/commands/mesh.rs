@@ -6,7 +6,7 @@ use crate::exit::Failure;
 use crate::files::OutDir;
 use crate::timing::Stopwatch;
 use nmt::figures::{mesh_svg, nodes_svg, quality_svg};
-use nmt::io::{csv_of_clouds, vtu_of_meshes};
+use nmt::io::{csv_of_clouds, msh_of_meshes, vtu_of_meshes};
 use nmt::pipeline::{clouds, meshes};
 use nmt::report::Report;
 
@@ -22,6 +22,7 @@ pub fn mesh(args: &MeshArgs) -> Result<(), Failure> {
         let out = OutDir::create(out)?;
         out.write("nodes.csv", csv_of_clouds(parts.iter().map(|p| (&*p.name, &*p.edge_names, p.mesh.cloud()))))?;
         out.write("mesh.vtu", vtu_of_meshes(&parts))?;
+        out.write("mesh.msh", msh_of_meshes(&parts))?;
         out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
         out.write_picture("quality", &quality_svg(&problem, &parts))?;
         out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;

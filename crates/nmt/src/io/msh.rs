@@ -1,0 +1,194 @@
+//! mesh.msh: Gmsh's format MSH 4.1, ASCII, with names for subdomains, edges and common edges (docs/gmsh.md).
+
+mod model;
+mod names;
+
+use crate::pipeline::{MeshPart, SolvedPart};
+use model::{Entity, Model};
+use nmt_geom::{Bbox, NodeId, Point};
+use std::fmt::Write as _;
+
+/// Gmsh's number for a line of two nodes.
+const LINE: u8 = 1;
+/// Gmsh's number for a triangle of three nodes.
+const TRIANGLE: u8 = 2;
+
+/// The meshes: a physical surface of every subdomain, a physical curve of every edge and of every common edge.
+///
+/// Where all common edges conform the subdomains share their nodes; otherwise each subdomain keeps its own. Nodes and
+/// triangles are numbered as in nodes.csv and mesh.vtu, from 1, but for nodes of a welded mesh that an earlier subdomain
+/// has already.
+pub fn msh_of_meshes(parts: &[MeshPart]) -> String {
+    let parts: Vec<&MeshPart> = parts.iter().collect();
+    Msh::of(&Model::new(&parts), &parts).out
+}
+
+/// The meshes with `F, tau_zx, tau_zy, tau` at nodes as views; where subdomains share nodes, at the nodes of triangles,
+/// since each subdomain has values of its own there.
+pub fn msh_of_solutions(solved: &[SolvedPart]) -> String {
+    let parts: Vec<&MeshPart> = solved.iter().map(|s| &s.part).collect();
+    let model = Model::new(&parts);
+    let mut msh = Msh::of(&model, &parts);
+    let nodes = |s: &SolvedPart| (0..s.part.mesh.cloud().n_nodes()).map(NodeId::of);
+    let stresses: Vec<Vec<_>> =
+        solved.iter().map(|s| nodes(s).map(|node| s.solution.stress_at_node(node)).collect()).collect();
+    msh.view("F", &model, &parts, |k, node| solved[k].solution.f[node.index()]);
+    msh.view("tau_zx", &model, &parts, |k, node| stresses[k][node.index()].zx);
+    msh.view("tau_zy", &model, &parts, |k, node| stresses[k][node.index()].zy);
+    msh.view("tau", &model, &parts, |k, node| stresses[k][node.index()].magnitude());
+    msh.out
+}
+
+// Numbers are written in the shortest form that reads back to the same bits; writing to a string cannot fail.
+struct Msh {
+    out: String,
+}
+
+impl Msh {
+    fn of(model: &Model, parts: &[&MeshPart]) -> Self {
+        let mut msh = Self { out: "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".into() };
+        msh.physical_names(model);
+        msh.entities(model);
+        msh.nodes(model);
+        msh.elements(model, parts);
+        msh
+    }
+
+    fn section(&mut self, name: &str, write: impl FnOnce(&mut String)) {
+        let _ = writeln!(self.out, "${name}");
+        write(&mut self.out);
+        let _ = writeln!(self.out, "$End{name}");
+    }
+
+    fn physical_names(&mut self, model: &Model) {
+        self.section("PhysicalNames", |out| {
+            let _ = writeln!(out, "{}", model.groups.len());
+            for (k, group) in model.groups.iter().enumerate() {
+                let _ = writeln!(out, "{} {} \"{}\"", group.dimension, k + 1, group.name);
+            }
+        });
+    }
+
+    fn entities(&mut self, model: &Model) {
+        let envelope = |nodes: &[NodeId]| Bbox::of(nodes.iter().map(|node| model.xy[node.index()]));
+        let write_box = |out: &mut String, tag: usize, Bbox { min: [x0, y0], max: [x1, y1] }: Bbox| {
+            let _ = write!(out, "{tag} {x0} {y0} 0 {x1} {y1} 0");
+        };
+        let write_list = |out: &mut String, tags: &[String]| {
+            let _ = write!(out, " {}", tags.len());
+            for tag in tags {
+                let _ = write!(out, " {tag}");
+            }
+        };
+        // Every end of a curve is a point.
+        let point = |node: NodeId| model.points.binary_search(&node).map_or(0, |k| k + 1);
+        self.section("Entities", |out| {
+            let _ = writeln!(out, "{} {} {} 0", model.points.len(), model.curves.len(), model.surfaces.len());
+            for (k, node) in model.points.iter().enumerate() {
+                let [x, y]: Point = model.xy[node.index()];
+                let _ = writeln!(out, "{} {x} {y} 0 0", k + 1);
+            }
+            for (k, curve) in model.curves.iter().enumerate() {
+                write_box(out, k + 1, envelope(&curve.nodes));
+                write_list(out, &curve.groups.iter().map(|group| (group + 1).to_string()).collect::<Vec<_>>());
+                let ends = curve.nodes.first().zip(curve.nodes.last());
+                // The end has the sign that says that the curve leads there.
+                let ends = ends.map(|(&from, &to)| [point(from).to_string(), format!("-{}", point(to))]);
+                write_list(out, ends.as_ref().map_or(&[][..], |ends| ends));
+                out.push('\n');
+            }
+            for (k, surface) in model.surfaces.iter().enumerate() {
+                write_box(out, k + 1, surface.envelope);
+                write_list(out, &[(k + 1).to_string()]);
+                let sign = |is_reversed: bool| if is_reversed { "-" } else { "" };
+                let bounds = surface.bounds.iter().map(|b| format!("{}{}", sign(b.is_reversed), b.curve + 1));
+                write_list(out, &bounds.collect::<Vec<_>>());
+                out.push('\n');
+            }
+        });
+    }
+
+    fn nodes(&mut self, model: &Model) {
+        let blocks = || model.owners.chunk_by(|p, q| p.0 == q.0);
+        self.section("Nodes", |out| {
+            let n_nodes = model.xy.len();
+            let _ = writeln!(out, "{} {n_nodes} 1 {n_nodes}", blocks().count());
+            for block in blocks() {
+                let (dimension, tag) = match block[0].0 {
+                    Entity::Point(k) => (0, k + 1),
+                    Entity::Curve(k) => (1, k + 1),
+                    Entity::Surface(k) => (2, k + 1),
+                };
+                let _ = writeln!(out, "{dimension} {tag} 0 {}", block.len());
+                for (_, node) in block {
+                    let _ = writeln!(out, "{}", node.index() + 1);
+                }
+                for (_, node) in block {
+                    let [x, y] = model.xy[node.index()];
+                    let _ = writeln!(out, "{x} {y} 0");
+                }
+            }
+        });
+    }
+
+    /// Lines come first, as the format has it, but triangles have the first numbers: those of mesh.vtu, from 1.
+    fn elements(&mut self, model: &Model, parts: &[&MeshPart]) {
+        let n_triangles: usize = parts.iter().map(|part| part.mesh.n_triangles()).sum();
+        let n_lines: usize = model.curves.iter().map(|curve| curve.nodes.len() - 1).sum();
+        self.section("Elements", |out| {
+            let n = n_triangles + n_lines;
+            let _ = writeln!(out, "{} {n} 1 {n}", model.curves.len() + parts.len());
+            let mut tag = n_triangles;
+            for (k, curve) in model.curves.iter().enumerate() {
+                let _ = writeln!(out, "1 {} {LINE} {}", k + 1, curve.nodes.len() - 1);
+                for pair in curve.nodes.windows(2) {
+                    tag += 1;
+                    let _ = writeln!(out, "{tag} {} {}", pair[0].index() + 1, pair[1].index() + 1);
+                }
+            }
+            tag = 0;
+            for (k, part) in parts.iter().enumerate() {
+                let _ = writeln!(out, "2 {} {TRIANGLE} {}", k + 1, part.mesh.n_triangles());
+                for nodes in model.triangles(k, part) {
+                    tag += 1;
+                    let [a, b, c] = nodes.map(|node| node.index() + 1);
+                    let _ = writeln!(out, "{tag} {a} {b} {c}");
+                }
+            }
+        });
+    }
+
+    /// A scalar by subdomain and node of that.
+    fn view(&mut self, name: &str, model: &Model, parts: &[&MeshPart], value: impl Fn(usize, NodeId) -> f64) {
+        let head = |out: &mut String, n_rows: usize| {
+            // One string, the name; one real, the time 0; three integers: step 0, one component, how many rows.
+            let _ = writeln!(out, "1\n\"{name}\"\n1\n0\n3\n0\n1\n{n_rows}");
+        };
+        if model.is_welded {
+            self.section("ElementNodeData", |out| {
+                head(out, parts.iter().map(|part| part.mesh.n_triangles()).sum());
+                let triangles =
+                    parts.iter().enumerate().flat_map(|(k, p)| p.mesh.tri_nodes().iter().map(move |t| (k, t)));
+                for (tag, (k, nodes)) in triangles.enumerate() {
+                    let [a, b, c] = nodes.map(|node| value(k, node));
+                    let _ = writeln!(out, "{} 3 {a} {b} {c}", tag + 1);
+                }
+            });
+        } else {
+            self.section("NodeData", |out| {
+                let values: Vec<f64> = (parts.iter().enumerate())
+                    .flat_map(|(k, part)| (0..part.mesh.cloud().n_nodes()).map(move |node| (k, NodeId::of(node))))
+                    .map(|(k, node)| value(k, node))
+                    .collect();
+                head(out, values.len());
+                // In the order of $Nodes, which readers that skip the numbers count on.
+                for (_, node) in &model.owners {
+                    let _ = writeln!(out, "{} {}", node.index() + 1, values[node.index()]);
+                }
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
