@@ -243,6 +243,31 @@ fn zero_on_holes_is_named_in_the_report_and_warned_of() {
 }
 
 #[test]
+fn common_edges_are_reported_where_there_are_several_subdomains() {
+    let paper_1 = problem("paper-1.toml");
+    // Two densities side by side, as in the paper.
+    let square_and_triangle = serde_json::json!([{
+        "between": ["square", "triangle"], "edges": ["e2", "e3"], "from": [2.0, 0.0], "to": [2.0, 2.0],
+        "nodes": [41, 61], "conforming": false
+    }]);
+    for command in ["nodes", "mesh", "solve"] {
+        let output = nmt(&[command, &paper_1, "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert_eq!(json(&output)["common_edges"], square_and_triangle, "{command}");
+    }
+    let directory = scratch("common");
+    let apart = file(
+        &directory,
+        "apart.toml",
+        "[[subdomain]]\nnodes = [5, 5]\nrectangle = { from = [0, 0], to = [1, 1] }\n\
+         [[subdomain]]\nnodes = [5, 5]\nrectangle = { from = [2, 0], to = [3, 1] }\n",
+    );
+    assert_eq!(json(&nmt(&["nodes", &apart, "--json"]))["common_edges"], serde_json::json!([]));
+    assert!(!text(&nmt(&["nodes", &apart]).stdout).contains("Common edges"));
+    assert_eq!(json(&nmt(&["nodes", &problem("paper-4.toml"), "--json"])).get("common_edges"), None);
+}
+
+#[test]
 fn the_report_as_text_reads_well() {
     let output = nmt(&["solve", &problem("paper-1.toml"), "--nodes", "9,9", "--at", "0.5,0.5", "--at", "9,9"]);
     // The residual is rounding: its digits are nobody's business.
