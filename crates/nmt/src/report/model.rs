@@ -326,9 +326,10 @@ impl Report {
         for (name, section) in sections {
             self.warnings.extend(warnings::of_section(name, section, problem.solve.holes));
         }
-        if self.subdomains.len() > 1 {
-            self.warnings.push(warnings::several_subdomains(self.subdomains.len()));
-        }
+        let common = self.common_edges.as_deref().unwrap_or_default();
+        let names = self.subdomains.iter().map(|subdomain| &*subdomain.name);
+        self.warnings.extend(warnings::of_common_edges(names, common));
+        self.warnings.extend(warnings::of_torque(self.subdomains.len(), problem.solve.load));
     }
 
     fn new(problem: &Problem, subdomains: Vec<SubdomainReport>) -> Self {
