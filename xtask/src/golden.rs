@@ -8,6 +8,7 @@
 
 mod checksum;
 mod clouds;
+mod common;
 mod fixture;
 mod meshes;
 mod results;
@@ -221,10 +222,15 @@ mod tests {
 
     #[test]
     fn one_changed_number_of_any_file_is_found() {
-        let (case, expected, found) = entries("cloud-holes");
+        assert_changes_are_found("cloud-holes", &["nodes", "segments", "census", "edges", "mesh"]);
+        assert_changes_are_found("cloud-meeting", &["common_edges", "common_nodes"]);
+    }
+
+    /// The first and the last number of each file, changed by what a digit can be.
+    fn assert_changes_are_found(name: &str, files: &[&str]) {
+        let (case, expected, found) = entries(name);
         assert!(worst(&expected, &found).expect("entries").difference <= case.tolerance);
-        // The first and the last number of each file, changed by what a digit can be.
-        for file in ["nodes", "segments", "census", "edges", "mesh"] {
+        for &file in files {
             let of_file = |e: &&mut Entry| e.id.starts_with(file);
             let n = expected.iter().filter(|e| e.id.starts_with(file)).count();
             assert!(n > 5, "{file}: {n}");
@@ -237,6 +243,25 @@ mod tests {
                 assert!(worst.difference > case.tolerance && worst.expected.id == id, "{id}: {worst:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_common_edge_that_ends_elsewhere_lists_its_nodes_backwards_or_is_missing_is_found() {
+        let (case, expected, found) = entries("cloud-meeting");
+        let is_of = |e: &Entry, column: &str| e.id.starts_with("common_edges") && e.id.ends_with(column);
+        let mut moved = expected.clone();
+        for entry in moved.iter_mut().filter(|e| is_of(e, "to_y")) {
+            entry.value += 1e-9;
+        }
+        assert!(worst(&moved, &found).expect("entries").difference > case.tolerance);
+        let mut backwards = expected.clone();
+        let is_first = |e: &Entry| e.id.starts_with("common_nodes.csv, common_edge 1, side 2");
+        let nodes: Vec<f64> = expected.iter().filter(|e| is_first(e)).map(|e| e.value).collect();
+        backwards.iter_mut().filter(|e| is_first(e)).zip(nodes.iter().rev()).for_each(|(e, &node)| e.value = node);
+        assert_eq!(nodes.len(), 12);
+        assert!(worst(&backwards, &found).expect("entries").difference > case.tolerance);
+        let without: Vec<Entry> = expected.into_iter().filter(|e| !e.id.contains("edge1 3, edge2 1")).collect();
+        assert!(worst(&without, &found).is_err());
     }
 
     #[test]

@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 
 const TASKS: &str = "\
 cargo xtask test                  every test: unit, property, doc and integration tests, golden results, files read by meshio
-cargo xtask golden                nmt against fixtures/golden: clouds by GNU Octave, results of the shipped problems; the worst entry of each
+cargo xtask golden                nmt against fixtures/golden: clouds, meshes and common edges by GNU Octave, results of the shipped problems; the worst entry of each
 cargo xtask golden --regenerate   rewrite fixtures/golden: by Octave, and from the present code (say in the commit why numbers moved)
 cargo xtask figures               redraw docs/figures
 cargo xtask licences              licences of all dependencies against the list of allowed ones";

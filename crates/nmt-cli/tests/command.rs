@@ -252,6 +252,88 @@ fn zero_on_holes_is_named_in_the_report_and_warned_of() {
     }
 }
 
+/// Subdomains of side 1 in a row, the first two side by side and the third apart.
+fn row_of_squares(n: usize, solve: &str) -> String {
+    let square =
+        |x: usize| format!("[[subdomain]]\nnodes = [9, 9]\nrectangle = {{ from = [{x}, 0], to = [{}, 1] }}\n", x + 1);
+    [0, 1, 3].into_iter().take(n).map(square).collect::<String>() + solve
+}
+
+#[test]
+fn only_subdomains_with_common_edges_are_said_not_to_add_up() {
+    let directory = scratch("alone");
+    let stderr_of = |name: &str, text_of_file: &str, command: &str| {
+        let output = nmt(&[command, &file(&directory, name, text_of_file)]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    for command in ["check", "solve"] {
+        let stderr = stderr_of("three.toml", &row_of_squares(3, ""), command);
+        assert!(
+            stderr.contains("subdomains \"s1\" and \"s2\" have common edges, and are solved each alone"),
+            "{stderr}"
+        );
+        assert!(!stderr.contains("torque"), "{stderr}");
+        // Bars apart: each is solved as it is, and their torques under one twist add up.
+        let apart = row_of_squares(3, "").replace("[1, 0], to = [2, 1]", "[1.5, 0], to = [2.5, 1]");
+        assert_eq!(stderr_of("apart.toml", &apart, command), "");
+        let stderr = stderr_of("torque.toml", &(apart + "[solve]\ntorque = 2\n"), command);
+        assert!(stderr.contains("each of the 3 subdomains carries the torque"), "{stderr}");
+        assert_eq!(stderr_of("one.toml", &row_of_squares(1, "[solve]\ntorque = 2\n"), command), "");
+    }
+}
+
+#[test]
+fn three_parts_have_the_same_nodes_on_both_sides_of_all_common_edges_since_two_are_conforming() {
+    let directory = scratch("conforming");
+    let file_text = std::fs::read_to_string(problem("three-parts.toml")).expect("a problem that ships");
+    let own = file(&directory, "own.toml", &file_text.replace("conforming = true", "conforming = false"));
+    let common = |problem: &str| {
+        let report = json(&nmt(&["nodes", problem, "--json"]));
+        report["common_edges"].as_array().expect("several subdomains").clone()
+    };
+    let names =
+        |edge: &Value| (edge["between"].clone(), edge["edges"].clone(), edge["from"].clone(), edge["to"].clone());
+    let (conforming, own) = (common(&problem("three-parts.toml")), common(&own));
+    assert_eq!(conforming.len(), 2);
+    assert_eq!(conforming.iter().map(names).collect::<Vec<_>>(), own.iter().map(names).collect::<Vec<_>>());
+    assert_eq!(conforming[0]["between"], serde_json::json!(["arch", "head"]));
+    assert_eq!(conforming[1]["edges"], serde_json::json!(["bore/e1", "e1"]));
+    for edge in &conforming {
+        assert_eq!((&edge["nodes"][0], &edge["conforming"]), (&edge["nodes"][1], &Value::Bool(true)), "{edge}");
+        assert!(edge["nodes"][0].as_u64() > Some(2), "{edge}");
+    }
+    for edge in &own {
+        assert_eq!(edge["conforming"], false);
+        assert_ne!(edge["nodes"][0], edge["nodes"][1], "{edge}");
+    }
+}
+
+#[test]
+fn common_edges_are_reported_where_there_are_several_subdomains() {
+    let paper_1 = problem("paper-1.toml");
+    // Two densities side by side, as in the paper.
+    let square_and_triangle = serde_json::json!([{
+        "between": ["square", "triangle"], "edges": ["e2", "e3"], "from": [2.0, 0.0], "to": [2.0, 2.0],
+        "nodes": [41, 61], "conforming": false
+    }]);
+    for command in ["nodes", "mesh", "solve"] {
+        let output = nmt(&[command, &paper_1, "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert_eq!(json(&output)["common_edges"], square_and_triangle, "{command}");
+    }
+    let directory = scratch("common");
+    let apart = file(
+        &directory,
+        "apart.toml",
+        "[[subdomain]]\nnodes = [5, 5]\nrectangle = { from = [0, 0], to = [1, 1] }\n\
+         [[subdomain]]\nnodes = [5, 5]\nrectangle = { from = [2, 0], to = [3, 1] }\n",
+    );
+    assert_eq!(json(&nmt(&["nodes", &apart, "--json"]))["common_edges"], serde_json::json!([]));
+    assert!(!text(&nmt(&["nodes", &apart]).stdout).contains("Common edges"));
+    assert_eq!(json(&nmt(&["nodes", &problem("paper-4.toml"), "--json"])).get("common_edges"), None);
+}
+
 #[test]
 fn the_report_as_text_reads_well() {
     let output = nmt(&["solve", &problem("paper-1.toml"), "--nodes", "9,9", "--at", "0.5,0.5", "--at", "9,9"]);

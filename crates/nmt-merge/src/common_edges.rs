@@ -31,6 +31,8 @@ pub struct CommonEdge {
     /// Each side's boundary nodes on it, ends included, from `from` to `to`. An end that is a vertex of the other side
     /// alone has no node on this side. Where it closes, the node there comes once, first.
     pub nodes: [Vec<NodeId>; 2],
+    /// What two nodes may differ by and still be at one place, kept since finding it takes a look at every outline.
+    tolerance: f64,
 }
 
 impl CommonEdge {
@@ -46,13 +48,11 @@ impl CommonEdge {
 
     /// The first node along it that has none of the other side at its place: which side's, and the node.
     pub(crate) fn first_apart(&self, sides: &[Side]) -> Option<Unmatched> {
-        let sections: Vec<&Section> = sides.iter().map(|side| side.section).collect();
-        let tolerance = same_point(&sections);
         let at = |side: usize, node: NodeId| sides[self.between[side].index()].cloud.xy()[node.index()];
         let n_nodes = self.nodes.each_ref().map(Vec::len);
         for k in 0..n_nodes[0].max(n_nodes[1]) {
             match [0, 1].map(|side| self.nodes[side].get(k).map(|&node| (node, at(side, node)))) {
-                [Some((_, p)), Some((_, q))] if distance(p, q) <= tolerance => {}
+                [Some((_, p)), Some((_, q))] if distance(p, q) <= self.tolerance => {}
                 [Some((node, p)), Some((other, q))] => {
                     // The one that comes first along the edge has no partner.
                     let [p_ahead, q_ahead] = [p, q].map(|at| distance(at, self.from));
@@ -111,6 +111,7 @@ pub fn common_edges(sides: &[Side]) -> Vec<CommonEdge> {
             from: part.from,
             to: part.to,
             nodes,
+            tolerance,
         })
     };
     parts.iter().filter_map(common).collect()

@@ -1,11 +1,13 @@
 //! One report model, rendered as JSON or text.
 
+mod common;
 mod model;
 mod singular;
 mod text;
 mod thickness;
 mod warnings;
 
+pub use common::CommonEdgeReport;
 pub use model::{
     CensusReport, HoleReport, PointReport, QualityReport, Report, Seconds, SolutionReport, StarsReport,
     SubdomainReport, Totals,

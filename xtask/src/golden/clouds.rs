@@ -1,7 +1,7 @@
 //! Clouds against the reference's: node by node, segment by segment, edge by edge.
 
 use super::fixture::{Table, numbers};
-use super::{Entry, Scale, meshes, read_problem};
+use super::{Entry, Scale, common, meshes, read_problem};
 use crate::root;
 use anyhow::{Context as _, Result, bail};
 use nmt::pipeline::{cloud_params, section};
@@ -32,6 +32,8 @@ pub fn entries(problem: &Path, expected: &Path) -> Result<(Vec<Entry>, Vec<Entry
     }
     let (of_meshes, found_in_meshes) = meshes::entries(&clouds, expected)?;
     of_reference.extend(of_meshes);
+    let (of_common_edges, found_common_edges) = common::entries(&clouds, &sizes, expected)?;
+    of_reference.extend(of_common_edges);
     let mut found = Vec::new();
     let tables = [
         ("nodes", NODES, of_all(&clouds, |_, cloud| Ok(node_rows(cloud)))?),
@@ -44,6 +46,7 @@ pub fn entries(problem: &Path, expected: &Path) -> Result<(Vec<Entry>, Vec<Entry
         found.extend(table_entries(name, &columns, &rows, &sizes));
     }
     found.extend(found_in_meshes);
+    found.extend(found_common_edges);
     Ok((of_reference, found))
 }
 
@@ -85,7 +88,7 @@ fn clouds(file: &Path) -> Result<Vec<(Section, Cloud)>> {
 }
 
 /// One entry a number; its id names the file, the keys of the row and the column.
-fn table_entries<'a>(
+pub fn table_entries<'a>(
     name: &'a str,
     columns: &'a [String],
     rows: &'a [Vec<f64>],
@@ -93,14 +96,16 @@ fn table_entries<'a>(
 ) -> impl Iterator<Item = Entry> + 'a {
     let n_keys = match name {
         "nodes" | "edges" => 2,
-        "segments" => 4,
+        "segments" | "common_edges" => 4,
+        "common_nodes" => 3,
         _ => 1,
     };
     rows.iter().flat_map(move |row| {
         let size = sizes.get(row[0] as usize - 1).copied().unwrap_or(1.0);
         let keys: Vec<String> = (0..n_keys).map(|k| format!("{} {}", columns[k], row[k])).collect();
         (n_keys..columns.len()).map(move |k| {
-            let is_length = matches!(&*columns[k], "x" | "y" | "length" | "closing_error");
+            let is_length =
+                matches!(&*columns[k], "x" | "y" | "length" | "closing_error" | "from_x" | "from_y" | "to_x" | "to_y");
             let scale = if is_length { Scale::Length(size) } else { Scale::Exact };
             Entry { id: format!("{name}.csv, {}, {}", keys.join(", "), columns[k]), value: row[k], scale }
         })
@@ -119,7 +124,7 @@ fn undirected(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 /// A number that the reference counts from 1.
-fn from_one(number: usize) -> f64 {
+pub fn from_one(number: usize) -> f64 {
     (number + 1) as f64
 }
 

@@ -2,6 +2,7 @@
 
 use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
 use crate::problem::Problem;
+use crate::report::common::{self, CommonEdgeReport};
 use crate::report::singular::singular_vertices;
 use crate::report::warnings;
 use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
@@ -22,6 +23,9 @@ pub struct Report {
     pub units: String,
     /// One entry a subdomain, in the order of the file.
     pub subdomains: Vec<SubdomainReport>,
+    /// One entry a common edge, none where the subdomains share nothing; absent with one subdomain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub common_edges: Option<Vec<CommonEdgeReport>>,
     /// One entry a point asked for, in order.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<PointReport>>,
@@ -278,6 +282,7 @@ impl Report {
     pub fn of_clouds(problem: &Problem, parts: &[CloudPart]) -> Self {
         let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.edge_names, &part.cloud)).collect();
         let mut report = Self::new(problem, subdomains);
+        report.common_edges = common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, &part.cloud)));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, &part.cloud)));
         report
     }
@@ -292,6 +297,8 @@ impl Report {
     /// The report of meshes.
     pub fn of_meshes(problem: &Problem, parts: &[MeshPart]) -> Self {
         let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
+        report.common_edges =
+            common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, part.mesh.cloud())));
         if !problem.mesh.elimination.is_whole() {
             report.warnings.extend(parts.iter().filter_map(warnings::of_mesh));
@@ -302,6 +309,8 @@ impl Report {
     /// The report of solutions, with the values at `points`.
     pub fn of_solutions(problem: &Problem, parts: &[SolvedPart], points: &[Point]) -> Self {
         let mut report = Self::new(problem, parts.iter().map(solved_report).collect());
+        let meshes = parts.iter().map(|solved| &solved.part);
+        report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let points = points_report(parts, points);
         for part in parts {
             report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
@@ -317,9 +326,10 @@ impl Report {
         for (name, section) in sections {
             self.warnings.extend(warnings::of_section(name, section, problem.solve.holes));
         }
-        if self.subdomains.len() > 1 {
-            self.warnings.push(warnings::several_subdomains(self.subdomains.len()));
-        }
+        let common = self.common_edges.as_deref().unwrap_or_default();
+        let names = self.subdomains.iter().map(|subdomain| &*subdomain.name);
+        self.warnings.extend(warnings::of_common_edges(names, common));
+        self.warnings.extend(warnings::of_torque(self.subdomains.len(), problem.solve.load));
     }
 
     fn new(problem: &Problem, subdomains: Vec<SubdomainReport>) -> Self {
@@ -329,6 +339,7 @@ impl Report {
             title: problem.title.clone(),
             units: problem.units.clone(),
             subdomains,
+            common_edges: None,
             points: None,
             totals: Totals { nodes, ..Totals::default() },
             warnings: Vec::new(),

@@ -1,5 +1,6 @@
 //! The report as text: the paper's report of generated and deleted nodes, mesh, solver, results.
 
+use crate::report::common::CommonEdgeReport;
 use crate::report::model::{PointReport, Report, SmoothingReport, SolutionReport, SubdomainReport};
 use std::fmt::Write as _;
 
@@ -14,6 +15,9 @@ pub fn text(report: &Report) -> String {
     }
     for subdomain in &report.subdomains {
         out.subdomain(subdomain);
+    }
+    if let Some(common) = report.common_edges.as_ref().filter(|common| !common.is_empty()) {
+        out.common_edges(common);
     }
     if let Some(points) = report.points.as_ref().filter(|points| !points.is_empty()) {
         out.points(points);
@@ -140,6 +144,26 @@ impl<U: Fn(i32) -> String> Text<U> {
         let grows =
             if s.tau_singular_at.is_empty() { "" } else { " (largest at nodes; infinite at re-entrant vertices)" };
         self.row("τ_max", format!("{} at {}{grows}", number(s.tau_max), place(s.tau_max_at)));
+    }
+
+    /// The paper's topological matrix.
+    fn common_edges(&mut self, common: &[CommonEdgeReport]) {
+        let heads = ["subdomains", "edges", "from", "to", "nodes", "conforming"].map(str::to_owned);
+        let row = |edge: &CommonEdgeReport| {
+            let nodes = edge.nodes.map(|n| n.to_string()).join(", ");
+            let conforming = if edge.conforming { "yes" } else { "no" }.to_owned();
+            [edge.between.join(", "), edge.edges.join(", "), place(edge.from), place(edge.to), nodes, conforming]
+        };
+        let rows: Vec<[String; 6]> = std::iter::once(heads).chain(common.iter().map(row)).collect();
+        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: [usize; 6] = std::array::from_fn(width);
+        let _ = writeln!(self.out, "Common edges");
+        for row in &rows {
+            let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
+            let line = cells.collect::<Vec<_>>().join("   ");
+            let _ = writeln!(self.out, "  {}", line.trim_end());
+        }
+        self.out.push('\n');
     }
 
     fn points(&mut self, points: &[PointReport]) {

@@ -1,13 +1,14 @@
 //! What the user should know before trusting a number.
 
 use crate::pipeline::{MeshPart, SolvedPart};
+use crate::report::common::CommonEdgeReport;
 use crate::report::model::PointReport;
 use crate::report::singular::singular_vertices;
 use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::HoleCondition;
+use nmt_mfdm::{HoleCondition, Load};
 
 /// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
 /// nodes beside the boundary.
@@ -91,12 +92,26 @@ pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
     warnings
 }
 
-/// The paper solves each subdomain alone.
-pub(super) fn several_subdomains(n: usize) -> String {
-    format!(
-        "the {n} subdomains are solved each alone, with F = 0 on its whole outline, common edges included: \
-         their J do not add up to that of one bar"
-    )
+/// Subdomains that share edges, the paper solves each alone; of those that are apart, that is the solution.
+pub(super) fn of_common_edges<'a>(names: impl Iterator<Item = &'a str>, common: &[CommonEdgeReport]) -> Option<String> {
+    let is_shared = |name: &&str| common.iter().any(|edge| edge.between.iter().any(|side| side == name));
+    let names: Vec<String> = names.filter(is_shared).map(|name| format!("\"{name}\"")).collect();
+    let (last, others) = names.split_last()?;
+    Some(format!(
+        "subdomains {} and {last} have common edges, and are solved each alone, with F = 0 on its whole outline, common \
+         edges included: their J do not add up to that of one bar",
+        others.join(", ")
+    ))
+}
+
+/// A torque for several subdomains.
+pub(super) fn of_torque(n_subdomains: usize, load: Load) -> Option<String> {
+    (n_subdomains > 1 && matches!(load, Load::Torque(_))).then(|| {
+        format!(
+            "each of the {n_subdomains} subdomains carries the torque, as if it were the only one; where they turn \
+             together give the twist, and see what torque each carries"
+        )
+    })
 }
 
 /// A point outside.
