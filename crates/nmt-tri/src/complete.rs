@@ -47,6 +47,7 @@ struct Gaps<'a> {
     /// Pieces with a gap on their left, from node to node; those of the real boundary are filled first.
     front: BTreeSet<[u32; 2]>,
     is_segment: BTreeSet<[u32; 2]>,
+    tiny: f64, // area, square of the user's length unit
 }
 
 fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
@@ -56,7 +57,9 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 impl<'a> Gaps<'a> {
     fn new(cloud: &'a Cloud, triangles: Vec<[u32; 3]>) -> Self {
         let is_segment = cloud.boundary().segments().iter().map(|s| [s.from.0, s.to.0]).collect();
-        Self { cloud, triangles, front: BTreeSet::new(), is_segment }
+        let envelope = cloud.boundary().envelope();
+        let tiny = tiny_area(envelope.width() * envelope.height());
+        Self { cloud, triangles, front: BTreeSet::new(), is_segment, tiny }
     }
 
     fn at(&self, node: u32) -> Point {
@@ -96,11 +99,9 @@ impl<'a> Gaps<'a> {
     /// Takes away the triangles beside a gap that encloses next to nothing: nodes on a skew line with rounding noise leave
     /// such gaps, and filled alone they would be what was dropped as too small.
     fn widen_slivers(&mut self) {
-        let envelope = self.cloud.boundary().envelope();
-        let tiny = tiny_area(envelope.width() * envelope.height());
         loop {
             let narrow: BTreeSet<[u32; 2]> =
-                self.gaps().into_iter().filter(|gap| self.area(gap) < tiny).flatten().collect();
+                self.gaps().into_iter().filter(|gap| self.area(gap) < self.tiny).flatten().collect();
             let before = self.triangles.len();
             // A triangle whose side leads the other way lies beyond the front.
             self.triangles.retain(|nodes| !sides(*nodes).iter().any(|&[a, b]| narrow.contains(&[b, a])));
@@ -169,13 +170,20 @@ impl<'a> Gaps<'a> {
 
     /// The node nearest to a piece of the front that makes a triangle with it on its left, crossing nothing and holding no
     /// other node; the smaller number of equally near ones.
+    ///
+    /// Not one that elimination would drop as too small \[D8\], where there is another: the nodes of a skew side are on one
+    /// line but for rounding, and the next of them is nearer to a piece of that side than any node across the gap. Never one
+    /// without an area in floating point, which gradients are divided by.
     fn nearest_visible(&self, [a, b]: [u32; 2], loose: &BTreeSet<u32>) -> Option<u32> {
         let (p, q) = (self.at(a), self.at(b));
         let ends: BTreeSet<u32> = self.front.iter().flatten().copied().collect();
-        let mut candidates: BTreeMap<(OrderedDistance, u32), ()> = BTreeMap::new();
+        let mut candidates: BTreeMap<(bool, OrderedDistance, u32), ()> = BTreeMap::new();
         for &node in ends.iter().chain(loose) {
-            if node != a && node != b && side(p, q, self.at(node)) == Ordering::Greater {
-                candidates.insert((OrderedDistance(segment::distance_to(self.at(node), p, q)), node), ());
+            let at = self.at(node);
+            let area = 0.5 * cross(sub(q, p), sub(at, p));
+            if node != a && node != b && side(p, q, at) == Ordering::Greater && area > 0.0 {
+                let distance = OrderedDistance(segment::distance_to(at, p, q));
+                candidates.insert((area < self.tiny, distance, node), ());
             }
         }
         let fits = |node: &u32| {
@@ -187,7 +195,7 @@ impl<'a> Gaps<'a> {
             };
             !ends.iter().chain(loose).any(|other| holds(*other)) && !self.front.iter().any(crossed)
         };
-        candidates.into_keys().map(|(_, node)| node).find(fits)
+        candidates.into_keys().map(|(_, _, node)| node).find(fits)
     }
 
     fn bare(&self, [from, to]: [u32; 2]) -> MeshError {

@@ -160,6 +160,8 @@ impl Mesh {
     /// Checks the invariants of a finished mesh: areas positive and summing to the polygon's, every interior edge in two
     /// triangles and every boundary segment in one, V − E + T = 1 − holes, every node in some triangle.
     ///
+    /// Areas count as they are computed, for gradients are divided by them: one that is positive but for rounding is none.
+    ///
     /// # Errors
     /// The first invariant that is broken.
     pub fn check(&self) -> Result<(), MeshError> {

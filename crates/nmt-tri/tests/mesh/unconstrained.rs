@@ -13,6 +13,10 @@ fn cloud(section: &Section, params: &CloudParams) -> Cloud {
 fn checked(cloud: Cloud) -> (Mesh, MeshCensus) {
     let (mesh, census) = Mesh::unconstrained(cloud, &Elimination::default()).expect("every gap is filled");
     assert_eq!(mesh.check(), Ok(()));
+    // Completion puts in nothing that elimination would drop.
+    let envelope = mesh.cloud().boundary().envelope();
+    let least = mesh.triangles().map(|t| mesh.area(t)).fold(f64::INFINITY, f64::min);
+    assert!(least >= 1e-12 * envelope.width() * envelope.height(), "{least}");
     let MeshCensus { delaunay, outside, in_hole, tiny, crossing, completed } = census;
     assert_eq!(mesh.n_triangles(), delaunay - outside - in_hole - tiny - crossing + completed, "{census:?}");
     (mesh, census)
@@ -59,6 +63,20 @@ fn slits_of_a_millionth_are_completed() {
             let section = crate::sections::Shape::Slotted { width: 1e-6 }.section(1.0);
             checked(cloud(&section, &params(nodes, irregularity)));
         }
+    }
+}
+
+#[test]
+fn completion_joins_no_three_nodes_of_a_skew_side() {
+    // Nodes of a skew side are on one line but for rounding. The gap at its corner was begun with three of them: a triangle
+    // with an area of 0 in floating point (25 nodes), or of 1e-16 (16 nodes).
+    let sevenths =
+        [[5.0, 10.0], [3.0, 2.0], [5.0, 6.0], [3.0, 1.0], [8.0, 3.0]].map(|p| p.map(|c: f64| c * (1.0 / 7.0)));
+    let whole = [[16.0, 7.0], [9.0, 2.0], [4.0, 22.0], [21.0, 9.0], [13.0, 6.0]];
+    for (corners, nodes, n_nodes) in [(sevenths, [9, 5], 25), (whole, [4, 8], 16)] {
+        let cloud = cloud(&Section::solid(Outline::polygon(corners)), &params(nodes, 0.0));
+        assert_eq!(cloud.n_nodes(), n_nodes);
+        assert!(checked(cloud).1.completed > 0);
     }
 }
 
