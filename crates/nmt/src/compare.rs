@@ -127,6 +127,8 @@ pub struct Figures {
     /// J/reference − 1; `None` where the reference itself failed.
     #[serde(rename = "J_difference")]
     pub j_difference: Option<f64>,
+    /// Stars whose polynomial is of a lower order than asked for: too few nodes, or badly placed ones.
+    pub order_lowered: usize,
 }
 
 impl Row {
@@ -246,6 +248,7 @@ impl Run {
                 j: solution.j,
                 tau_max: solution.tau_max.value,
                 j_difference: reference.map(|j| solution.j / j - 1.0),
+                order_lowered: solution.stars.order_lowered,
             }),
             Err(error) => Outcome::Failed { error: error.to_string() },
         };

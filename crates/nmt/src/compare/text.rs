@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 
 /// Width of the methods' names.
 const METHOD: usize = 30;
+/// Stands after a method some of whose stars are of a lower order.
+const LOWERED: &str = " *";
 /// Widths of the columns of numbers but the last.
 const COLUMNS: [usize; 4] = [8, 14, 14, 12];
 
@@ -29,6 +31,9 @@ pub fn text(comparison: &Comparison) -> String {
         None => format!("J is held against the best, {}, on the same cloud", Method::REFERENCE.name()),
     };
     let _ = writeln!(out, "{against}; seconds from stencils to results.");
+    if comparison.rows.iter().filter_map(Row::figures).any(|figures| figures.order_lowered > 0) {
+        let _ = writeln!(out, "* some stars are of a lower order: the cloud has too few nodes for it.");
+    }
     out
 }
 
@@ -47,7 +52,8 @@ fn table_row(out: &mut String, comparison: &Comparison, row: &Row) {
                 format!("{:.7}", Significant(figures.tau_max)),
                 difference,
             ];
-            line(out, &row.method, cells, &format!("{:.3}", row.seconds));
+            let mark = if figures.order_lowered > 0 { LOWERED } else { "" };
+            line(out, &format!("{}{mark}", row.method), cells, &format!("{:.3}", row.seconds));
         }
         Outcome::Failed { error } => {
             let _ = writeln!(out, "  {:<METHOD$}  failed: {error}", row.method);

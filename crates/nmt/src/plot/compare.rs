@@ -4,7 +4,7 @@ use super::axes::{FRAME_STROKE, LABEL_SIZE, TICK_GAP, TICK_LENGTH, TICK_SIZE, ce
 use super::colour::{Rgb, of_subdomain};
 use super::page::{MARGIN, PAGE_WIDTH, description, title};
 use super::scene::{Anchor, Direction, MarkForm, Point, Polyline, Scene, Shape, Stroke, Text};
-use super::text::{CAP_HEIGHT, Run, clipped, plain};
+use super::text::{CAP_HEIGHT, Run, Style, clipped, plain};
 use super::ticks::{Decimal, decade, power_of_ten, signed};
 use super::{Caption, ErrorSeries};
 
@@ -28,6 +28,8 @@ const GRID: Stroke = Stroke { colour: Rgb(0xe3e3e3), width: 0.8, opacity: 1.0 };
 const PADDING: f64 = 0.12;
 /// On axes shorter than this many decades 1, 2 and 5 of each are labelled, on longer ones powers of ten alone.
 const SHORT_AXIS: f64 = 2.5;
+/// Exponents of ten whose numbers read well in full.
+const PLAIN: std::ops::Range<i32> = -3..6;
 /// Least distance of labels of the upright axis.
 const LABEL_DISTANCE: f64 = 22.0;
 
@@ -74,6 +76,13 @@ impl LogAxis {
             .filter(|tick| (0.0..=1.0).contains(&self.share(tick.value())))
             .collect()
     }
+
+    /// Ticks with their labels: as plain numbers where all read well so, otherwise all with powers of ten.
+    fn labelled(&self, length: f64) -> Vec<(f64, Vec<Run>)> {
+        let ticks = self.ticks(length);
+        let plainly = self.high - self.low < SHORT_AXIS && ticks.iter().all(|t| PLAIN.contains(&t.exponent));
+        ticks.iter().map(|tick| (tick.value(), tick.label(plainly))).collect()
+    }
 }
 
 impl Tick {
@@ -81,14 +90,13 @@ impl Tick {
         Decimal { digits: self.digits, exponent: self.exponent }.value()
     }
 
-    fn label(&self) -> Vec<Run> {
-        match (self.digits, self.exponent) {
-            (digits, exponent) if (-2..5).contains(&exponent) => plain(Decimal { digits, exponent }.in_units_of(0)),
-            (1, exponent) => power_of_ten(exponent),
-            (digits, exponent) => {
-                let mut runs = plain(format!("{digits}·10"));
-                runs.push(Run::new(signed(exponent), super::text::Style::Superscript));
-                runs
+    fn label(&self, plainly: bool) -> Vec<Run> {
+        match self.digits {
+            digits if plainly => plain(Decimal { digits, exponent: self.exponent }.in_units_of(0)),
+            1 => power_of_ten(self.exponent),
+            digits => {
+                let ten = Run::upright(format!("{digits}·10"));
+                vec![ten, Run::new(signed(self.exponent), Style::Superscript)]
             }
         }
     }
@@ -164,19 +172,19 @@ fn frame(axes: &[LogAxis; 2], origin: Point) -> Shape {
     let bottom = top + FRAME[1];
     let mut lines = vec![Polyline::rectangle(origin, FRAME)];
     let (mut grid, mut labels) = (Vec::new(), Vec::new());
-    for tick in axes[0].ticks(FRAME[0]) {
-        let x = left + FRAME[0] * axes[0].share(tick.value());
+    for (value, label) in axes[0].labelled(FRAME[0]) {
+        let x = left + FRAME[0] * axes[0].share(value);
         grid.push(Polyline::open(vec![[x, top], [x, bottom]]));
         lines.push(Polyline::open(vec![[x, bottom], [x, bottom + TICK_LENGTH]]));
         let at = [x, bottom + TICK_LENGTH + TICK_GAP + CAP_HEIGHT * TICK_SIZE];
-        labels.push(Shape::text(at, TICK_SIZE, Anchor::Middle, tick.label()));
+        labels.push(Shape::text(at, TICK_SIZE, Anchor::Middle, label));
     }
-    for tick in axes[1].ticks(FRAME[1]) {
-        let y = bottom - FRAME[1] * axes[1].share(tick.value());
+    for (value, label) in axes[1].labelled(FRAME[1]) {
+        let y = bottom - FRAME[1] * axes[1].share(value);
         grid.push(Polyline::open(vec![[left, y], [left + FRAME[0], y]]));
         lines.push(Polyline::open(vec![[left, y], [left - TICK_LENGTH, y]]));
         let at = [left - TICK_LENGTH - TICK_GAP, centred_baseline(y, TICK_SIZE)];
-        labels.push(Shape::text(at, TICK_SIZE, Anchor::End, tick.label()));
+        labels.push(Shape::text(at, TICK_SIZE, Anchor::End, label));
     }
     // Marks of the ninths of a decade, without labels.
     for (k, axis) in axes.iter().enumerate() {
