@@ -24,6 +24,8 @@ pub enum Command {
     Mesh(MeshArgs),
     /// Solve the Prandtl torsion problem
     Solve(SolveArgs),
+    /// Solve by every formulation on the same clouds: unknowns, J, error and time side by side
+    Compare(CompareArgs),
 }
 
 /// The problem file and its densities.
@@ -124,6 +126,28 @@ pub struct SolveArgs {
     pub at: Vec<[f64; 2]>,
 }
 
+/// Options of `nmt compare`.
+#[derive(Debug, clap::Args)]
+pub struct CompareArgs {
+    /// Problem file (TOML)
+    pub file: PathBuf,
+    /// Densities N_x,N_y of every subdomain, instead of the file's; may be repeated, one cloud each
+    #[arg(long, value_name = "Nx,Ny", value_parser = counts)]
+    pub nodes: Vec<[usize; 2]>,
+    /// Seed of the randomisation, 0 or more
+    #[arg(long, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Exact J to hold the others against, for a problem of one subdomain; by default the best of them is
+    #[arg(long = "exact-J", value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub exact_j: Option<f64>,
+    /// Print the rows as JSON on stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Directory for the files (created if need be)
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
 impl ProblemArgs {
     /// What the options change of the file, without keys of [solve].
     pub fn overrides(&self) -> Overrides {
@@ -167,4 +191,9 @@ fn counts(text: &str) -> Result<[usize; 2], String> {
 fn point(text: &str) -> Result<[f64; 2], String> {
     let point: [f64; 2] = pair(text, "numbers")?;
     if point.iter().all(|v| v.is_finite()) { Ok(point) } else { Err("expected finite numbers".into()) }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.trim().parse().ok();
+    value.filter(|v| v.is_normal() && *v > 0.0).ok_or_else(|| "expected a positive number, such as 0.1406".into())
 }

@@ -1,11 +1,13 @@
 //! One function a command: stages of the pipeline, then its files, then its report.
 
 mod check;
+mod compare;
 mod mesh;
 mod nodes;
 mod solve;
 
 pub use check::check;
+pub use compare::compare;
 pub use mesh::mesh;
 pub use nodes::nodes;
 pub use solve::solve;
@@ -14,15 +16,19 @@ use crate::args::ProblemArgs;
 use crate::exit::Failure;
 use crate::files::{OutDir, print, read_problem};
 use crate::timing::Stopwatch;
-use nmt::problem::{Overrides, Problem};
+use nmt::problem::{Overrides, Problem, Source};
 use nmt::report::{Report, text};
 use std::path::Path;
 
 /// Reads and checks the problem.
 fn load(args: &ProblemArgs, overrides: &Overrides) -> Result<Problem, Failure> {
-    let source = read_problem(&args.file)?;
+    parse(&read_problem(&args.file)?, overrides)
+}
+
+/// Checks the problem of a text.
+fn parse(source: &Source, overrides: &Overrides) -> Result<Problem, Failure> {
     Problem::parse(&source.file, &source.text, overrides)
-        .map_err(|errors| Failure::Problem { errors, source_text: source })
+        .map_err(|errors| Failure::Problem { errors, source_text: source.clone() })
 }
 
 /// Completes the report with its times, writes report.json where there is a directory, and prints it.

@@ -33,6 +33,12 @@ pub enum Failure {
     /// The numerics failed.
     #[error(transparent)]
     Numerics(NmtError),
+    /// No method of a comparison could solve anything; why stands in its rows.
+    #[error("no method could solve the problem; each row says why")]
+    NoMethod,
+    /// An option does not suit the problem.
+    #[error("{0}")]
+    Option(String),
     /// A file cannot be read or written.
     #[error("{} cannot be {action}", .path.display())]
     Io {
@@ -73,7 +79,8 @@ impl Failure {
     fn code(&self) -> u8 {
         match self {
             Self::Problem { .. } | Self::NotText { .. } => 1,
-            Self::Numerics(_) | Self::Json(_) => 3,
+            Self::Option(_) => USAGE,
+            Self::Numerics(_) | Self::NoMethod | Self::Json(_) => 3,
             Self::Io { .. } | Self::Picture { .. } => 4,
         }
     }

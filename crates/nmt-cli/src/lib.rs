@@ -5,6 +5,7 @@
 //! nmt nodes FILE    the cloud
 //! nmt mesh FILE     the cloud and its triangles
 //! nmt solve FILE    torsion: F, τ, J
+//! nmt compare FILE  torsion by every formulation, side by side
 //! ```
 //!
 //! Exit codes: 0 done, 1 the problem is wrong, 2 usage, 3 the numerics failed, 4 input or output failed. Results go to
@@ -42,6 +43,7 @@ pub fn run<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) ->
         Command::Nodes(options) => commands::nodes(options),
         Command::Mesh(options) => commands::mesh(options),
         Command::Solve(options) => commands::solve(options),
+        Command::Compare(options) => commands::compare(options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -18,6 +18,11 @@ impl Stopwatch {
         Self { start: now, last: now, laps: Vec::new() }
     }
 
+    /// Seconds since the start.
+    pub fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
     /// A stage of a subdomain ends now.
     pub fn lap(&mut self, subdomain: usize, stage: Stage) {
         let now = Instant::now();

@@ -22,6 +22,7 @@
 //!
 //! Features: `png` (default) draws PNG beside SVG; `parallel` uses all cores, and changes no number.
 
+pub mod compare;
 mod error;
 pub mod figures;
 pub mod io;

@@ -249,7 +249,7 @@ pub fn solutions(
 }
 
 /// A mesh that is not sound since steps were left out.
-fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<crate::problem::ProblemError> {
+pub(crate) fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<crate::problem::ProblemError> {
     let place = problem.mesh.elimination_place.as_ref().filter(|_| !problem.mesh.elimination.is_whole())?;
     let error = part.mesh.check().err()?;
     let message =

@@ -16,10 +16,11 @@
 //! | `topology` | edges and rim of a triangulation; edges as few long lines |
 //! | `contour`, `simplify` | boundary of {value ≥ level}, traced exactly, then thinned to what the eye sees |
 //! | `colour`, `scale` | colour maps; values → bands of colour, and the colour bar |
-//! | `nodes`, `mesh`, `solution`, `histogram` | the figures |
+//! | `nodes`, `mesh`, `solution`, `histogram`, `compare` | the figures |
 
 mod axes;
 mod colour;
+mod compare;
 mod contour;
 mod histogram;
 mod mesh;
@@ -103,6 +104,24 @@ pub fn mesh_figure(caption: &Caption<'_>, parts: &[Part<'_>]) -> String {
 /// the scale ends at the 99.5th percentile, its bar in an arrow, and the bar says how high the peaks are.
 pub fn solution_figure(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> String {
     svg::render(&solution::scene(caption, parts))
+}
+
+/// One line of the picture of errors.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorSeries<'a> {
+    /// Name, for the legend.
+    pub name: &'a str,
+    /// Cost and error, in the order that the line joins them; those that are not positive are left out.
+    pub points: &'a [[f64; 2]],
+    /// Series of one family have one colour; that of family 0 is grey.
+    pub family: usize,
+    /// Order of the method, which chooses the mark: 1 diamond, 2 disc, 3 square, 4 triangle.
+    pub order: usize,
+}
+
+/// SVG text of errors against cost, both axes logarithmic: a line and a mark for each series, and a legend.
+pub fn errors_figure(caption: &Caption<'_>, cost: &str, error: &str, series: &[ErrorSeries<'_>]) -> String {
+    svg::render(&compare::scene(caption, cost, error, series))
 }
 
 /// SVG text of the shapes of triangles: the share of them by shape measure, from [0, 0.1) to [0.9, 1]; where `before` is
