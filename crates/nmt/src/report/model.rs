@@ -404,7 +404,8 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         f: hole.f,
         area: hole.area,
     };
-    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition } = solution.stars;
+    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, wrong_sign: _ } =
+        solution.stars;
     let solution = SolutionReport {
         formulation: formulation.name(),
         order: *order,
