@@ -277,4 +277,16 @@ mod tests {
         let elsewhere = checksum::of_case(&root().join("fixtures/golden/cloud-holes")).expect("a case");
         assert_ne!(sound, elsewhere);
     }
+
+    #[test]
+    fn a_case_with_solutions_is_made_by_more_scripts() {
+        let scripts = |name: &str| {
+            let text = checksum::of_case(&root().join("fixtures/golden").join(name)).expect("a case");
+            text.lines().next().map(str::to_owned)
+        };
+        assert_eq!(scripts("cloud-skew"), scripts("cloud-narrow"));
+        assert_eq!(scripts("cloud-holes"), scripts("cloud-level-arch"));
+        let distinct = std::collections::BTreeSet::from(["cloud-skew", "cloud-ties", "cloud-holes"].map(scripts));
+        assert_eq!(distinct.len(), 3); // clouds alone, stars too, solutions too
+    }
 }
