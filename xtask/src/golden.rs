@@ -11,10 +11,14 @@ mod clouds;
 mod common;
 mod fixture;
 mod meshes;
+mod parts;
 mod results;
+mod solutions;
+mod stars;
 
 use crate::root;
 use anyhow::{Context as _, Result, bail};
+use parts::{Compared, Parts};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,6 +78,7 @@ struct Case {
     reference: Reference,
     problem: PathBuf,
     tolerance: f64,
+    parts: Parts,
 }
 
 /// The worst of a comparison.
@@ -84,45 +89,59 @@ struct Worst {
     difference: f64,
 }
 
-/// Compares every case and prints its worst entry, or why there is none.
+/// Compares every case and prints the worst entry of each of its parts, or why there is none.
 pub fn compare() -> Result<()> {
     let mut failed = Vec::new();
     for case in cases()? {
-        match compare_case(&case) {
-            Ok(Worst { expected, found, difference }) => {
-                println!(
-                    "{:26} worst entry {}: expected {:e}, found {:e}, off by {difference:.1e}",
-                    case.name, expected.id, expected.value, found.value
-                );
-                if difference > case.tolerance {
-                    failed.push(format!("{} ({}, tolerance {:.0e})", case.name, expected.id, case.tolerance));
-                }
-            }
+        let compared = match compared(&case) {
+            Ok(compared) => compared,
             Err(error) => {
                 println!("{:26} {error:#}", case.name);
                 failed.push(case.name);
+                continue;
+            }
+        };
+        for Compared { name, expected, found, tolerance } in compared {
+            let title = if name == "cloud" { case.name.clone() } else { format!("  {name}") };
+            match worst(&expected, &found) {
+                Ok(Worst { expected, found, difference }) => {
+                    println!(
+                        "{title:26} worst entry {}: expected {:e}, found {:e}, off by {difference:.1e}",
+                        expected.id, expected.value, found.value
+                    );
+                    if difference > tolerance {
+                        failed.push(format!("{} ({}, tolerance {tolerance:.0e})", case.name, expected.id));
+                    }
+                }
+                Err(error) => {
+                    println!("{title:26} {error:#}");
+                    failed.push(case.name.clone());
+                }
             }
         }
     }
     if failed.is_empty() { Ok(()) } else { bail!("golden results differ: {}", failed.join(", ")) }
 }
 
-fn compare_case(case: &Case) -> Result<Worst> {
-    let (expected, found) = match case.reference {
-        Reference::Octave => {
-            checksum::verify(&case.directory)?;
-            clouds::entries(&case.problem, &case.directory.join("expected"))?
-        }
-        Reference::Own => {
-            (results::read_expected(&case.directory.join("expected.csv"))?, results::results(&case.problem)?)
-        }
-    };
-    worst(&expected, &found)
+/// The parts of a case, the first of them its clouds or our own results.
+fn compared(case: &Case) -> Result<Vec<Compared>> {
+    let of_first = |(expected, found)| Compared { name: "cloud", expected, found, tolerance: case.tolerance };
+    if case.reference == Reference::Own {
+        let expected = results::read_expected(&case.directory.join("expected.csv"))?;
+        return Ok(vec![of_first((expected, results::results(&case.problem)?))]);
+    }
+    checksum::verify(&case.directory)?;
+    let directory = case.directory.join("expected");
+    let mut compared = vec![of_first(clouds::entries(&case.problem, &directory)?)];
+    compared.extend(case.parts.compared(&clouds::clouds(&case.problem)?, &directory)?);
+    Ok(compared)
 }
 
 /// Rewrites the expected results: those of Octave by its scripts, our own from the present code.
 pub fn regenerate() -> Result<()> {
-    octave(&format!("write_all('{}')", root().join("fixtures/golden").display()))?;
+    for script in ["write_all", "write_all_solutions"] {
+        octave(&format!("{script}('{}')", root().join("fixtures/golden").display()))?;
+    }
     for case in cases()? {
         match case.reference {
             Reference::Octave => checksum::write(&case.directory)?,
@@ -189,12 +208,14 @@ fn read_case(directory: PathBuf) -> Result<Case> {
         Reference::Octave => directory.join("problem.toml"),
         Reference::Own => root().join("fixtures/problems").join(word("problem")?),
     };
-    let tolerance = value("tolerance").and_then(|v| v.as_float()).context("case.toml: no tolerance")?;
+    let tolerance = parts::number(table.get_ref(), "tolerance").with_context(|| file.display().to_string())?;
+    let parts = Parts::of(table.get_ref()).with_context(|| file.display().to_string())?;
     Ok(Case {
         name: directory.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
         reference,
         problem,
-        tolerance: tolerance.as_str().replace('_', "").parse()?,
+        tolerance,
+        parts,
         directory,
     })
 }
@@ -280,5 +301,17 @@ mod tests {
         assert_eq!(checksum::verify(&directory).ok(), Some(()));
         let elsewhere = checksum::of_case(&root().join("fixtures/golden/cloud-holes")).expect("a case");
         assert_ne!(sound, elsewhere);
+    }
+
+    #[test]
+    fn a_case_with_solutions_is_made_by_more_scripts() {
+        let scripts = |name: &str| {
+            let text = checksum::of_case(&root().join("fixtures/golden").join(name)).expect("a case");
+            text.lines().next().map(str::to_owned)
+        };
+        assert_eq!(scripts("cloud-skew"), scripts("cloud-narrow"));
+        assert_eq!(scripts("cloud-holes"), scripts("cloud-level-arch"));
+        let distinct = std::collections::BTreeSet::from(["cloud-skew", "cloud-ties", "cloud-holes"].map(scripts));
+        assert_eq!(distinct.len(), 3); // clouds alone, stars too, solutions too
     }
 }

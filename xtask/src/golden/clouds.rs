@@ -63,7 +63,7 @@ fn of_all(
 }
 
 /// The clouds of a problem, made with the random numbers that the reference uses.
-fn clouds(file: &Path) -> Result<Vec<(Section, Cloud)>> {
+pub fn clouds(file: &Path) -> Result<Vec<(Section, Cloud)>> {
     let problem = read_problem(file, &Overrides::default())?;
     let random = root().join("fixtures/golden/random.csv");
     let text = fs::read_to_string(&random).with_context(|| format!("{} cannot be read", random.display()))?;
