@@ -47,7 +47,7 @@ pub struct ProblemArgs {
 /// Keys of [solve], each winning over the file's.
 #[derive(Debug, clap::Args)]
 pub struct SolveKeys {
-    /// Formulation: variational or local
+    /// Formulation: variational, local, or fem (linear finite elements, for comparison)
     #[arg(long)]
     pub formulation: Option<String>,
     /// Twist θ per unit length
@@ -59,12 +59,27 @@ pub struct SolveKeys {
     /// Condition on holes: circulation or zero
     #[arg(long)]
     pub holes: Option<String>,
-    /// Order p of the MWLS polynomial
+    /// Order p of the MWLS polynomial: 2, 3, 4; 1 in the variational formulation
     #[arg(long, allow_hyphen_values = true)]
     pub order: Option<i64>,
     /// Nodes in a star, the centre included
     #[arg(long, allow_hyphen_values = true)]
     pub star: Option<i64>,
+    /// How the nodes of a star are chosen: nearest or balanced
+    #[arg(long)]
+    pub stars: Option<String>,
+    /// Smoothing g of the weight: 0, which interpolates, to 1
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    pub smoothing: Option<f64>,
+    /// Trial functions of the variational formulation: blended, or the paper's mwls
+    #[arg(long)]
+    pub trial: Option<String>,
+    /// Its test functions: hat, or the paper's trial
+    #[arg(long)]
+    pub test: Option<String>,
+    /// Its Gauss points a triangle: 1, 3, 4, 6, 7 or 12
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub gauss: Option<i64>,
 }
 
 /// Options of `nmt check`.
@@ -168,6 +183,11 @@ impl ProblemArgs {
             holes: keys.holes.clone(),
             order: keys.order,
             star: keys.star,
+            stars: keys.stars.clone(),
+            smoothing: keys.smoothing,
+            trial: keys.trial.clone(),
+            test: keys.test.clone(),
+            gauss: keys.gauss,
             ..self.overrides_with_mesh(mesh)
         }
     }

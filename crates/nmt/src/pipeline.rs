@@ -80,10 +80,8 @@ pub struct Smoothing {
 pub struct SolvedPart {
     /// The subdomain with its mesh.
     pub part: MeshPart,
-    /// The formulation used.
-    pub formulation: Formulation,
-    /// Order p of the equations.
-    pub order: usize,
+    /// How it was solved: formulation, order, stars.
+    pub params: SolveParams,
     /// The solution.
     pub solution: TorsionSolution,
 }
@@ -111,7 +109,7 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
         }
         observer(k, Stage::Cloud);
     }
-    faults.extend(parts.iter().filter_map(|part| star_fault(problem, part)));
+    faults.extend(problem.subdomains.iter().filter_map(|subdomain| star_fault(problem, subdomain, &parts)));
     if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
 }
 
@@ -180,9 +178,13 @@ fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> c
     }
 }
 
-/// A star that the user chose larger than the cloud.
-fn star_fault(problem: &Problem, part: &CloudPart) -> Option<crate::problem::ProblemError> {
+/// A star that the user chose larger than the cloud; finite elements have none.
+fn star_fault(problem: &Problem, subdomain: &Subdomain, parts: &[CloudPart]) -> Option<crate::problem::ProblemError> {
     let (star, place) = (problem.solve.star?, problem.solve.star_place.as_ref()?);
+    let part = parts.iter().find(|part| part.name == subdomain.name)?;
+    if problem.solve.params(subdomain.formulation).formulation == Formulation::Fem {
+        return None;
+    }
     let n_nodes = part.cloud.n_nodes();
     (star > n_nodes).then(|| {
         let message = format!("star = {star} is larger than the cloud of subdomain \"{}\", {n_nodes} nodes", part.name);
@@ -233,17 +235,16 @@ pub fn solutions(
     }
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
-        let formulation = subdomain.formulation.unwrap_or(problem.solve.formulation);
+        let params = problem.solve.params(subdomain.formulation);
         let torsion = TorsionProblem {
             shear_modulus: subdomain.shear_modulus,
             load: problem.solve.load,
             holes: problem.solve.holes,
         };
-        let params = SolveParams { formulation, star: problem.solve.star, ..SolveParams::default() };
         let mut ended = |stage: nmt_mfdm::Stage| observer(k, stage.into());
         let solution = solve_observed(&torsion, &part.mesh, &params, &mut ended)
             .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
-        Ok(SolvedPart { part, formulation, order: problem.solve.order, solution })
+        Ok(SolvedPart { part, params, solution })
     };
     meshes.into_iter().enumerate().map(solve).collect()
 }

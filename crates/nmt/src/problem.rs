@@ -15,6 +15,7 @@ mod limits;
 mod read;
 mod schema;
 mod shape;
+mod solve;
 mod suggest;
 mod syntax;
 mod tree;

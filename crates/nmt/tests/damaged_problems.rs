@@ -83,7 +83,7 @@ const CASES: &[Case] = &[
     case("a key of another table", &[("seed = 20170301", "irregularity = 0.25")]),
     case("a hole beside its subdomain", &[("[[subdomain.hole]]", "[[hole]]")]),
     case("a table that does not exist", &[("[solve]", "[meshes]\nmethod = \"constrained\"\n[solve]")]),
-    case("a key that no table knows", &[("order = 2", "order = 2\ntrial = \"mwls\"")]),
+    case("a key that no table knows", &[("order = 2", "order = 2\nsource = \"x\"")]),
     case("a key with a blank", &[("units", "\"my units\"")]),
     // Subdomains and names.
     case("nothing at all", &[(SOUND, "")]),
@@ -130,7 +130,7 @@ const CASES: &[Case] = &[
     case("an infinite shear modulus", &[("shear_modulus = 1.0", "shear_modulus = inf")]),
     case("a shear modulus of a wrong kind", &[("shear_modulus = 1.0", "shear_modulus = \"steel\"")]),
     case("clearances out of range", &[("irregularity = 0.25", "edge_clearance = -0.1\nnode_clearance = 2.5")]),
-    case("an unknown formulation of a subdomain", &[("irregularity = 0.25", "formulation = \"fem\"")]),
+    case("an unknown formulation of a subdomain", &[("irregularity = 0.25", "formulation = \"fvm\"")]),
     // Shapes.
     case("no shape", &[(RECTANGLE, "")]),
     case(
@@ -238,13 +238,44 @@ const CASES: &[Case] = &[
         &[(SOUND, "[[subdomain]]\nnodes = [5, 5]\nrectangle = { from = [0, 0], to = [1e-40, 1e-40] }\n")],
     ),
     // [solve].
-    case("an unknown formulation", &[("\"variational\"", "\"fem\"")]),
+    case("an unknown formulation", &[("\"variational\"", "\"galerkin\"")]),
     case("a misspelt formulation", &[("\"variational\"", "\"Variatonal\"")]),
     case("an unknown condition on holes", &[("\"circulation\"", "\"one\"")]),
     case("both twist and torque", &[("twist = 1.0", "twist = 1.0\ntorque = 2.0")]),
     case("no twist", &[("twist = 1.0", "twist = 0.0")]),
     case("an infinite torque", &[("twist = 1.0", "torque = -inf")]),
-    case("an order out of range", &[("order = 2", "order = 3")]),
+    case("an order out of range", &[("order = 2", "order = 5")]),
+    case("no order", &[("order = 2", "order = 0")]),
+    case("a plane in the local formulation", &[("\"variational\"", "\"local\""), ("order = 2", "order = 1")]),
+    case(
+        "a plane in one local subdomain",
+        &[("irregularity = 0.25", "formulation = \"local\""), ("order = 2", "order = 1")],
+    ),
+    case("a star too small for its order", &[("order = 2", "order = 4")]),
+    case("an unknown choice of stars", &[("star = 9", "stars = \"balance\"")]),
+    case("a star in words", &[("star = 9", "star = \"nearest\"")]),
+    case("a smoothing out of range", &[("star = 9", "smoothing = 1.5")]),
+    case("a smoothing that is no number", &[("star = 9", "smoothing = nan")]),
+    case("unknown trial and test functions", &[("star = 9", "trial = \"moving\"\ntest = \"hats\"")]),
+    case("a Gauss rule that does not exist", &[("star = 9", "gauss = 5")]),
+    case("a Gauss rule that is not whole", &[("star = 9", "gauss = 3.0")]),
+    case("a misspelt key of [solve]", &[("star = 9", "smoothin = 0.1")]),
+    case("order and star of finite elements", &[("\"variational\"", "\"fem\"")]),
+    case(
+        "everything that finite elements have no use for",
+        &[
+            ("\"variational\"", "\"fem\""),
+            ("star = 9", "star = 3\nstars = \"nearest\"\nsmoothing = 0.1\ntrial = \"mwls\"\ntest = \"hat\"\ngauss = 3"),
+        ],
+    ),
+    case(
+        "what only the variational formulation has",
+        &[("\"variational\"", "\"local\""), ("star = 9", "trial = \"mwls\"\ntest = \"trial\"\ngauss = 3")],
+    ),
+    case(
+        "an order beside a formulation that cannot be read",
+        &[("\"variational\"", "\"fem\""), ("irregularity = 0.25", "formulation = \"lokal\"")],
+    ),
     case("an order that is not whole", &[("order = 2", "order = 2.0")]),
     case("a star too small", &[("star = 9", "star = 5")]),
     case("a negative seed", &[("seed = 20170301", "seed = -1")]),
@@ -262,7 +293,7 @@ const CASES: &[Case] = &[
             ("0.2*sin", "0.2sin"),
             ("radius = 0.2", "radius = 0"),
             ("order = 2", "order = 5"),
-            ("star = 9", "star = \"9\""),
+            ("star = 9", "star = \"9\"\ngauss = 2"),
         ],
     ),
     case(

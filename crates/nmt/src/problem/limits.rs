@@ -4,7 +4,7 @@ use super::schema::MeshMethod;
 use super::suggest;
 use nmt_cloud::{BYTES_PER_GRID_POINT, ClearanceUnit, MAX_GRID_POINTS};
 use nmt_curve::Division;
-use nmt_mfdm::{Formulation, HoleCondition};
+use nmt_mfdm::{Formulation, GAUSS_POINTS, HoleCondition, MAX_ORDER, StarChoice, Test, Trial, n_monomials};
 use nmt_tri::Elimination;
 
 /// Lengths, moduli, twists and torques are at most this, whatever their unit.
@@ -21,9 +21,6 @@ const MOST_EDGE_NODES: i128 = 1_000_000;
 
 /// Most sweeps of smoothing: after some tens nothing moves any more.
 const MOST_SWEEPS: i128 = 1000;
-
-/// The orders of the MWLS polynomial that exist.
-const ORDERS: [usize; 1] = [2];
 
 /// Least and most spacings of clearance.
 ///
@@ -158,17 +155,18 @@ pub(super) fn edge_nodes(n: i128) -> Result<usize, Refusal> {
     Ok(n as usize)
 }
 
-/// p.
+/// p; that 1 is for the variational formulation alone is known only with the subdomains.
 pub(super) fn order(n: i128) -> Result<usize, Refusal> {
-    if let Some(&order) = ORDERS.iter().find(|&&order| order as i128 == n) {
-        return Ok(order);
+    if (1..=MAX_ORDER as i128).contains(&n) {
+        return Ok(n as usize);
     }
-    refuse(format!("`order` is {n}, and only order 2 exists so far"), "give order = 2, or leave it out")
+    let remedy = "give order = 2, 3 or 4, or 1 in the variational formulation; or leave it out for 2";
+    refuse(format!("`order` is {n}, outside 1 … {MAX_ORDER}"), remedy)
 }
 
 /// Nodes in a star of polynomials of order `order`, as far as the cloud need not be known.
 pub(super) fn star(n: i128, order: usize) -> Result<usize, Refusal> {
-    let monomials = (order + 1) * (order + 2) / 2;
+    let monomials = n_monomials(order);
     if n < monomials as i128 {
         let message = format!("`star` is {n}, fewer nodes than the {monomials} monomials of order {order}");
         return refuse(message, format!("give at least {monomials}, or leave it out for the default"));
@@ -177,6 +175,24 @@ pub(super) fn star(n: i128, order: usize) -> Result<usize, Refusal> {
         return refuse(format!("`star` is {n}, larger than any cloud"), "leave it out for the default");
     }
     Ok(n as usize)
+}
+
+/// g of the weight.
+pub(super) fn smoothing(value: f64) -> Result<f64, Refusal> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("`smoothing` is {}, outside [0, 1]", show(value));
+    refuse(message, "give 0, the default, which interpolates, or a little more, such as 0.1")
+}
+
+/// Gauss points a triangle.
+pub(super) fn gauss(n: i128) -> Result<usize, Refusal> {
+    if let Some(&points) = GAUSS_POINTS.iter().find(|&&points| points as i128 == n) {
+        return Ok(points);
+    }
+    let message = format!("`gauss` is {n}, and there is no rule of so many points");
+    refuse(message, "give 1, 3, 4, 6, 7 or 12, or leave it out for the order's own")
 }
 
 /// The seed of the randomisation.
@@ -188,6 +204,21 @@ pub(super) fn seed(n: i128) -> Result<u64, Refusal> {
 /// A formulation by its word.
 pub(super) fn formulation(word: &str) -> Result<Formulation, Refusal> {
     choice("formulation", word, &Formulation::ALL.map(|f| (f.name(), f)))
+}
+
+/// The choice of stars by its word.
+pub(super) fn stars(word: &str) -> Result<StarChoice, Refusal> {
+    choice("choice of stars", word, &StarChoice::ALL.map(|c| (c.name(), c)))
+}
+
+/// Trial functions by their word.
+pub(super) fn trial(word: &str) -> Result<Trial, Refusal> {
+    choice("trial", word, &Trial::ALL.map(|t| (t.name(), t)))
+}
+
+/// Test functions by their word.
+pub(super) fn test(word: &str) -> Result<Test, Refusal> {
+    choice("test", word, &Test::ALL.map(|t| (t.name(), t)))
 }
 
 /// A condition on holes by its word.
@@ -321,7 +352,7 @@ mod tests {
     fn every_range_refuses_what_is_not_a_number() {
         for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e31, -1e31] {
             assert!(real("x", value).is_err() && positive("x", value).is_err() && load("x", value).is_err());
-            assert!(irregularity(value).is_err() && clearance("x", value).is_err());
+            assert!(irregularity(value).is_err() && clearance("x", value).is_err() && smoothing(value).is_err());
         }
         assert!(positive("x", 1e-31).is_err() && load("x", -1e-31).is_err());
         assert!(load("x", -1.0).is_ok() && real("x", 1e-31).is_ok());

@@ -4,10 +4,11 @@ use super::error::{Faults, Place};
 use super::limits::{self, Refusal, quote};
 use super::schema::{MeshMethod, MeshSettings, Overrides, SolveSettings};
 use super::shape::{self, Shape};
-use super::tree::{HOLE_KEYS, MESH_KEYS, Reader, SOLVE_KEYS, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
+use super::solve;
+use super::tree::{HOLE_KEYS, MESH_KEYS, Reader, SUBDOMAIN_KEYS, TOP_KEYS, Table, Value};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::Division;
-use nmt_mfdm::{Formulation, Load};
+use nmt_mfdm::Formulation;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -32,6 +33,8 @@ pub(super) struct SubdomainDraft {
     pub(super) irregularity: f64,
     pub(super) shear_modulus: f64,
     pub(super) formulation: Option<Formulation>,
+    /// True where its formulation is given and could not be read.
+    pub(super) formulation_unread: bool,
     pub(super) division: Division,
     pub(super) clearance: ClearanceUnit,
     pub(super) edge_clearance: f64,
@@ -64,8 +67,7 @@ pub(super) fn read(tree: &DeTable<'_>, options: &Overrides, reader: &mut Reader<
     });
     let mut mesh = mesh(reader, &top);
     apply_to_mesh(options, &mut mesh, &mut reader.faults);
-    let mut solve = solve(reader, &top);
-    apply(options, &mut solve, &mut reader.faults);
+    let solve = solve::read(reader, &top, options);
     let mut subdomains = subdomains(reader, &top, options);
     if let Some(chosen) = options.nodes {
         let place = Place::Option(format!("--nodes {},{}", chosen[0], chosen[1]));
@@ -75,6 +77,7 @@ pub(super) fn read(tree: &DeTable<'_>, options: &Overrides, reader: &mut Reader<
             (subdomain.nodes, subdomain.nodes_place) = (nodes, place.clone());
         }
     }
+    let solve = solve.finish(&subdomains, &mut reader.faults);
     if options.formulation.is_some() {
         subdomains.iter_mut().for_each(|subdomain| subdomain.formulation = None);
     }
@@ -162,6 +165,7 @@ fn subdomain(
     let formulation = table.get("formulation");
     let formulation =
         formulation.and_then(|value| reader.text(&item, "formulation", value, "\"variational\"", limits::formulation));
+    let formulation_unread = formulation.is_none() && table.get("formulation").is_some();
     let division = table.get("division");
     let division = division.and_then(|value| reader.text(&item, "division", value, "\"arc\"", limits::division));
     let clearance = table.get("clearance");
@@ -192,6 +196,7 @@ fn subdomain(
         irregularity,
         shear_modulus,
         formulation,
+        formulation_unread,
         division: division.unwrap_or_default(),
         clearance: clearance.unwrap_or_default(),
         edge_clearance,
@@ -324,85 +329,7 @@ fn apply_to_mesh(options: &Overrides, settings: &mut MeshSettings, faults: &mut 
     }
 }
 
-/// `[solve]` of the file.
-fn solve(reader: &mut Reader<'_>, top: &Table<'_, '_>) -> SolveSettings {
-    let mut settings = SolveSettings::default();
-    let Some(value) = top.get("solve") else { return settings };
-    let item = "[solve]";
-    let DeValue::Table(entries) = value.get_ref() else {
-        let remedy = "write [solve] on a line of its own, with its keys below";
-        reader.wrong_kind_with::<()>("", "solve", "a table", value, remedy);
-        return settings;
-    };
-    let table = Table { entries, place: value.span(), item: item.to_owned() };
-    reader.known_keys(&table, item, SOLVE_KEYS);
-    let formulation = table.get("formulation");
-    let formulation =
-        formulation.and_then(|v| reader.text(item, "formulation", v, "\"variational\"", limits::formulation));
-    settings.formulation = formulation.unwrap_or_default();
-    let holes = table.get("holes");
-    let holes = holes.and_then(|v| reader.text(item, "holes", v, "\"circulation\"", limits::hole_condition));
-    settings.holes = holes.unwrap_or_default();
-    let [twist, torque] = ["twist", "torque"].map(|key| {
-        let value = table.get(key)?;
-        reader.number(item, key, value, "1.0", limits::load)
-    });
-    if table.get("twist").is_some() && table.get("torque").is_some() {
-        let place = table.key_place("twist").start.max(table.key_place("torque").start);
-        let place = if place == table.key_place("twist").start { "twist" } else { "torque" };
-        let message = "both `twist` and `torque` are given, and each determines the other";
-        reader.faults.push(table.key_place(place), item, message, "keep one of them");
-    }
-    settings.load = twist.map(Load::Twist).or(torque.map(Load::Torque)).unwrap_or(settings.load);
-    if let Some(order) = table.get("order").and_then(|v| reader.whole(item, "order", v, "2", limits::order)) {
-        settings.order = order;
-    }
-    if let Some(value) = table.get("star") {
-        settings.star = reader.whole(item, "star", value, "9", |n| limits::star(n, settings.order));
-        settings.star_place = Some(value.span().into());
-    }
-    if let Some(seed) = table.get("seed").and_then(|v| reader.whole(item, "seed", v, "1", limits::seed)) {
-        settings.seed = seed;
-    }
-    settings
-}
-
-/// Puts the options of the command over the settings of the file.
-fn apply(options: &Overrides, settings: &mut SolveSettings, faults: &mut Faults) {
-    let place = |name: &str, value: &dyn std::fmt::Display| Place::Option(format!("--{name} {value}"));
-    if let Some(word) = &options.formulation {
-        let chosen = option(faults, &place("formulation", word), limits::formulation(word));
-        settings.formulation = chosen.unwrap_or_default();
-    }
-    if let Some(word) = &options.holes {
-        settings.holes = option(faults, &place("holes", word), limits::hole_condition(word)).unwrap_or_default();
-    }
-    if let (Some(twist), Some(torque)) = (options.twist, options.torque) {
-        let place = Place::Option(format!("--twist {twist} --torque {torque}"));
-        faults.push(place, "", "both are given, and each determines the other", "keep one of them");
-    }
-    let twist = options.twist.map(|value| (value, "twist", Load::Twist as fn(f64) -> Load));
-    let torque = options.torque.map(|value| (value, "torque", Load::Torque as fn(f64) -> Load));
-    for (value, name, load) in twist.into_iter().chain(torque) {
-        if let Some(value) = option(faults, &place(name, &limits::show(value)), limits::load(name, value)) {
-            settings.load = load(value);
-        }
-    }
-    if let Some(order) = options.order {
-        let chosen = option(faults, &place("order", &order), limits::order(order.into()));
-        settings.order = chosen.unwrap_or(settings.order);
-    }
-    if let Some(star) = options.star {
-        let place = place("star", &star);
-        settings.star = option(faults, &place, limits::star(star.into(), settings.order));
-        settings.star_place = Some(place);
-    }
-    if let Some(seed) = options.seed {
-        settings.seed = seed;
-    }
-}
-
 /// The value of an option, its refusal noted.
-fn option<T>(faults: &mut Faults, place: &Place, checked: Result<T, Refusal>) -> Option<T> {
+pub(super) fn option<T>(faults: &mut Faults, place: &Place, checked: Result<T, Refusal>) -> Option<T> {
     checked.map_err(|Refusal { message, remedy }| faults.push(place.clone(), "", message, remedy)).ok()
 }

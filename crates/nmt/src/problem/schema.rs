@@ -3,7 +3,7 @@
 use super::error::{Place, Source};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
-use nmt_mfdm::{Formulation, HoleCondition, Load};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
 use nmt_tri::Elimination;
 
 /// A sound problem: every value within its limits, every outline closed, simple and in its place.
@@ -120,12 +120,22 @@ pub struct SolveSettings {
     pub load: Load,
     /// The condition on holes \[D12\].
     pub holes: HoleCondition,
-    /// p, the order of the MWLS polynomial.
+    /// p, the order of the MWLS polynomial, 1 to 4; 2 by default. Finite elements are linear whatever it is.
     pub order: usize,
     /// Nodes in a star, the centre included; by default the order's own.
     ///
     /// At least the number of monomials; that it is no larger than the cloud is known only when there is one.
     pub star: Option<usize>,
+    /// How the nodes of a star are chosen; the nearest by default.
+    pub stars: StarChoice,
+    /// g of the weight, in [0, 1]; 0, the default, interpolates.
+    pub smoothing: f64,
+    /// Trial functions of the variational formulation \[D13\].
+    pub trial: Trial,
+    /// Its test functions.
+    pub test: Test,
+    /// Its Gauss points a triangle; by default the order's own.
+    pub gauss: Option<usize>,
     /// Seed of the randomisation.
     pub seed: u64,
     /// Where `star` is given.
@@ -140,8 +150,29 @@ impl Default for SolveSettings {
             holes: HoleCondition::default(),
             order: 2,
             star: None,
+            stars: StarChoice::default(),
+            smoothing: 0.0,
+            trial: Trial::default(),
+            test: Test::default(),
+            gauss: None,
             seed: nmt_cloud::DEFAULT_SEED,
             star_place: None,
+        }
+    }
+}
+
+impl SolveSettings {
+    /// How a subdomain is solved, `formulation` being its own, if it has one.
+    pub fn params(&self, formulation: Option<Formulation>) -> SolveParams {
+        SolveParams {
+            formulation: formulation.unwrap_or(self.formulation),
+            order: self.order,
+            star: self.star,
+            stars: self.stars,
+            smoothing: self.smoothing,
+            trial: self.trial,
+            test: self.test,
+            gauss: self.gauss,
         }
     }
 }
@@ -163,6 +194,16 @@ pub struct Overrides {
     pub order: Option<i64>,
     /// `--star`.
     pub star: Option<i64>,
+    /// `--stars`.
+    pub stars: Option<String>,
+    /// `--smoothing`.
+    pub smoothing: Option<f64>,
+    /// `--trial`.
+    pub trial: Option<String>,
+    /// `--test`.
+    pub test: Option<String>,
+    /// `--gauss`.
+    pub gauss: Option<i64>,
     /// `--seed`.
     pub seed: Option<u64>,
     /// `--method`.

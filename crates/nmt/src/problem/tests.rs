@@ -2,7 +2,7 @@
 
 use super::*;
 use nmt_curve::Curve;
-use nmt_mfdm::{Formulation, HoleCondition, Load};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
 use nmt_tri::Elimination;
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
@@ -186,28 +186,98 @@ fn faults_of_options_name_the_option() {
         faults(EVERYTHING, &options),
         [
             "--formulation lokal: unknown formulation \"lokal\"; did you mean \"local\"? \
-             (use \"variational\" or \"local\")",
+             (use \"variational\", \"local\" or \"fem\")",
             "--holes none: unknown condition on holes \"none\"; use \"circulation\" or \"zero\"",
             "--twist NaN --torque 0: both are given, and each determines the other; keep one of them",
             "--twist NaN: `twist` is NaN; give a finite number",
             "--torque 0: `torque` is 0: nothing is twisted, and J = T/(Gθ) has no value; \
              give another torque, or leave it out for twist = 1",
-            "--order 7: `order` is 7, and only order 2 exists so far; give order = 2, or leave it out",
+            "--order 7: `order` is 7, outside 1 … 4; give order = 2, 3 or 4, or 1 in the variational formulation; or leave \
+             it out for 2",
+            "--nodes 1,20000: `nodes` has N_x = 1; give at least 2 grid lines each way, for example nodes = [41, 21]",
             "--star 3: `star` is 3, fewer nodes than the 6 monomials of order 2; give at least 6, or leave it out for the \
              default",
-            "--nodes 1,20000: `nodes` has N_x = 1; give at least 2 grid lines each way, for example nodes = [41, 21]",
         ]
     );
 }
 
 #[test]
 fn an_option_does_not_hide_a_fault_of_the_file() {
-    let text = EVERYTHING.replace("order = 2", "order = 4");
+    let text = EVERYTHING.replace("order = 2", "order = 5");
     let options = Overrides { order: Some(2), ..Overrides::default() };
     assert_eq!(
         faults(&text, &options),
-        ["a.toml:45:9: [solve]: `order` is 4, and only order 2 exists so far; give order = 2, or leave it out"]
+        [
+            "a.toml:45:9: [solve]: `order` is 5, outside 1 … 4; give order = 2, 3 or 4, or 1 in the variational formulation; \
+          or leave it out for 2"
+        ]
     );
+    let options = Overrides { star: Some(9), ..Overrides::default() };
+    let found = faults(&EVERYTHING.replace("star = 12", "star = 5"), &options);
+    assert!(found.len() == 1 && found[0].starts_with("a.toml:46:8: [solve]: `star` is 5, fewer"), "{found:?}");
+}
+
+/// A subdomain and a `[solve]`.
+fn square_with(solve: &str) -> String {
+    format!("[[subdomain]]\nnodes = [5, 5]\nrectangle = {{ from = [0, 0], to = [1, 1] }}\n[solve]\n{solve}\n")
+}
+
+#[test]
+fn how_it_is_solved_is_read_from_file_and_options() {
+    let text = square_with(
+        "order = 3\nstar = 22\nstars = \"balanced\"\nsmoothing = 0.25\ntrial = \"mwls\"\ntest = \"trial\"\ngauss = 7",
+    );
+    let solve = sound(&text, &Overrides::default()).solve;
+    let given = SolveParams {
+        formulation: Formulation::Variational,
+        order: 3,
+        star: Some(22),
+        stars: StarChoice::Balanced,
+        smoothing: 0.25,
+        trial: Trial::Mwls,
+        test: Test::Trial,
+        gauss: Some(7),
+    };
+    assert_eq!(solve.params(None), given);
+    let options = Overrides {
+        order: Some(1),
+        star: Some(4),
+        stars: Some("nearest".into()),
+        smoothing: Some(0.0),
+        trial: Some("blended".into()),
+        test: Some("hat".into()),
+        gauss: Some(12),
+        ..Overrides::default()
+    };
+    let expected = SolveParams { order: 1, star: Some(4), gauss: Some(12), ..SolveParams::default() };
+    assert_eq!(sound(&text, &options).solve.params(None), expected);
+}
+
+#[test]
+fn an_option_without_use_is_a_fault_and_a_key_of_the_file_is_only_where_its_own_formulation_has_none() {
+    // The file says how it is solved; finite elements for comparison need no edit of it.
+    let text = square_with("order = 3\ntrial = \"mwls\"");
+    let fem = Overrides { formulation: Some("fem".into()), ..Overrides::default() };
+    assert_eq!(sound(&text, &fem).solve.params(None).formulation, Formulation::Fem);
+    let idle = Overrides { order: Some(3), gauss: Some(3), ..fem.clone() };
+    assert_eq!(
+        faults(&text, &idle),
+        [
+            "--order 3: `order` is given, and finite elements, which alone are used, are linear and have no stars; leave \
+             it out, or choose formulation = \"variational\" or \"local\"",
+            "--gauss 3: `gauss` is given, and belongs to the variational formulation, which no subdomain has; leave it \
+             out, or choose formulation = \"variational\"",
+        ]
+    );
+    let local = Overrides { formulation: Some("local".into()), order: Some(1), ..Overrides::default() };
+    let found = faults(&text, &local);
+    assert!(
+        found.len() == 1 && found[0].starts_with("--order 1: `order` is 1, and the local formulation"),
+        "{found:?}"
+    );
+    let star = Overrides { order: Some(4), ..Overrides::default() };
+    let found = faults(&square_with("star = 9"), &star);
+    assert!(found.len() == 1 && found[0].contains("fewer nodes than the 15 monomials of order 4"), "{found:?}");
 }
 
 #[test]

@@ -63,7 +63,20 @@ pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "e
 /// The keys of `[mesh]`.
 pub(super) const MESH_KEYS: &[&str] = &["method", "elim", "smooth"];
 /// The keys of `[solve]`.
-pub(super) const SOLVE_KEYS: &[&str] = &["formulation", "twist", "torque", "holes", "order", "star", "seed"];
+pub(super) const SOLVE_KEYS: &[&str] = &[
+    "formulation",
+    "twist",
+    "torque",
+    "holes",
+    "order",
+    "star",
+    "stars",
+    "smoothing",
+    "trial",
+    "test",
+    "gauss",
+    "seed",
+];
 
 /// Where a key may belong that stands in the wrong table.
 const TABLES: [(&str, &[&str]); 5] = [

@@ -408,18 +408,17 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
 }
 
 fn solved_report(solved: &SolvedPart) -> SubdomainReport {
-    let SolvedPart { part, formulation, order, solution } = solved;
+    let SolvedPart { part, params, solution } = solved;
     let hole = |(name, hole): (&String, &nmt_mfdm::HoleResult)| HoleReport {
         name: name.clone(),
         condition: hole.condition.name(),
         f: hole.f,
         area: hole.area,
     };
-    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, wrong_sign: _ } =
-        solution.stars;
+    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, .. } = solution.stars;
     let solution = SolutionReport {
-        formulation: formulation.name(),
-        order: *order,
+        formulation: params.formulation.name(),
+        order: params.order_used(),
         holes: part.hole_names.iter().zip(&solution.holes).map(hole).collect(),
         unknowns: solution.unknowns,
         j: solution.j,
