@@ -13,7 +13,7 @@ pub(crate) enum Source<'a> {
     /// The same everywhere: 2 for torsion with Gθ = 1.
     Constant(f64),
     /// −f of ∇²u = f.
-    #[cfg_attr(not(test), expect(dead_code, reason = "Poisson problems take it; torsion has a constant source"))]
+    #[expect(dead_code, reason = "Poisson problems take it; torsion has a constant source")]
     Minus(&'a (dyn Fn(Point) -> f64 + Sync)),
 }
 

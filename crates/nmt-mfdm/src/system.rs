@@ -24,7 +24,7 @@ pub(crate) enum NodeCondition {
     /// The constant of a hole.
     Hole(u32),
     /// A flux is given: the value is free.
-    #[cfg_attr(not(test), expect(dead_code, reason = "Poisson problems have fluxes; torsion has none"))]
+    #[expect(dead_code, reason = "Poisson problems have fluxes; torsion has none")]
     Flux,
 }
 
