@@ -56,6 +56,12 @@ pub enum MfdmError {
         /// The value.
         value: f64,
     },
+    /// An edge of the section has no length.
+    #[error("an edge of the section cannot be measured: {source}")]
+    Curve {
+        /// What is wrong with it.
+        source: nmt_curve::CurveError,
+    },
     /// A section and a mesh do not belong together.
     #[error("the cloud has {found} edges on its boundary and the problem {given}; give each edge its condition")]
     Conditions {

@@ -13,7 +13,6 @@ pub(crate) enum Source<'a> {
     /// The same everywhere: 2 for torsion with Gθ = 1.
     Constant(f64),
     /// −f of ∇²u = f.
-    #[expect(dead_code, reason = "Poisson problems take it; torsion has a constant source")]
     Minus(&'a (dyn Fn(Point) -> f64 + Sync)),
 }
 

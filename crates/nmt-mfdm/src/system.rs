@@ -24,7 +24,6 @@ pub(crate) enum NodeCondition {
     /// The constant of a hole.
     Hole(u32),
     /// A flux is given: the value is free.
-    #[expect(dead_code, reason = "Poisson problems have fluxes; torsion has none")]
     Flux,
 }
 

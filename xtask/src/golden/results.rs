@@ -23,7 +23,7 @@ pub fn write_expected(problem: &Path, file: &Path) -> Result<()> {
 /// The results of a problem, in both formulations.
 pub fn results(file: &Path) -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
-    for formulation in Formulation::MESHLESS {
+    for formulation in Formulation::ALL {
         let overrides = Overrides { formulation: Some(formulation.name().into()), ..Overrides::default() };
         let problem = read_problem(file, &overrides)?;
         for solved in solve_problem(&problem)? {

@@ -1,5 +1,7 @@
 //! The directions in which a curve leaves its first and reaches its last point.
 
+use std::f64::consts::TAU;
+
 use nmt_geom::Point;
 use nmt_geom::point::{cross, distance, dot, sub};
 
@@ -22,6 +24,19 @@ impl Curve {
     /// Unit vector in which the curve reaches its last point, `[0, 0]` for a curve without length.
     pub fn end_direction(&self) -> Point {
         self.direction(CurveEnd::Finish)
+    }
+
+    /// Unit vector in which the curve passes its point at fraction `u` of the parameter; `[0, 0]` where it has no
+    /// direction (a cusp, a curve without length). At the ends it is that of [`Self::start_direction`] and
+    /// [`Self::end_direction`].
+    pub fn direction_at(&self, u: f64) -> Point {
+        if u <= 0.0 {
+            return self.start_direction();
+        }
+        if u >= 1.0 {
+            return self.end_direction();
+        }
+        unit(self.velocity(u))
     }
 
     fn direction(&self, end: CurveEnd) -> Point {
@@ -51,7 +66,11 @@ impl Curve {
                 let (sine, cosine) = (start + u * sweep).sin_cos();
                 [-sweep.signum() * sine, sweep.signum() * cosine]
             }
-            Self::Ellipse { semi_axes, rotation, .. } => rotated([0.0, semi_axes[1]], *rotation),
+            Self::Ellipse { semi_axes, rotation, .. } => {
+                // Once around is exactly where it began.
+                let (sine, cosine) = if u == 1.0 { (0.0, 1.0) } else { (TAU * u).sin_cos() };
+                rotated([-semi_axes[0] * sine, semi_axes[1] * cosine], *rotation)
+            }
             Self::Parametric { x, y, from_t, to_t } => {
                 let forward = (to_t - from_t).signum();
                 let t = self.variable(u).value;
@@ -109,6 +128,24 @@ mod tests {
     #[track_caller]
     fn near(found: Point, expected: Point, radians: f64) {
         assert!(distance(found, expected) < radians, "{found:?}, expected {expected:?}");
+    }
+
+    #[test]
+    fn directions_between_the_ends_are_those_of_short_chords() {
+        let curves = [
+            graph("x^2", 0.0, 0.5),
+            graph("x^2", 0.5, 0.0),
+            parametric("cos(t)", "2*sin(t)", 1.0, -2.0),
+            Curve::arc([0.0, 0.0], [1.0, 0.0], [0.0, 1.0], Turn::Clockwise),
+            Curve::Ellipse { centre: [1.0, 1.0], semi_axes: [2.0, 1.0], rotation: 0.3 },
+            Curve::Line { from: [0.0, 0.0], to: [3.0, 4.0] },
+        ];
+        for curve in curves {
+            for u in [0.2, 0.5, 0.77] {
+                let chord = unit(sub(curve.point(u + 1e-5), curve.point(u - 1e-5)));
+                near(curve.direction_at(u), chord, 1e-8); // the chord's own error
+            }
+        }
     }
 
     #[test]

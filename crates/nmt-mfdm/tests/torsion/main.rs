@@ -4,6 +4,7 @@
 mod convergence;
 mod holes;
 mod invariance;
+mod poisson;
 mod problem;
 mod sections;
 mod stars;

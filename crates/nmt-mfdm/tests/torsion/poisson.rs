@@ -1,0 +1,160 @@
+//! Poisson problems with known solutions: patches, orders of convergence, fluxes on straight and curved edges and holes.
+
+use nmt_cloud::{CloudParams, Section, generate};
+use nmt_curve::Outline;
+use nmt_mfdm::{Formulation, MfdmError, PoissonProblem, SolveParams, Test, Trial, solve_poisson};
+use nmt_tri::Mesh;
+
+/// Slope of log error over log h by least squares, the points being [h, error].
+fn slope(points: &[[f64; 2]]) -> f64 {
+    let n = points.len() as f64;
+    let mean = |d: usize| points.iter().map(|p| p[d].ln()).sum::<f64>() / n;
+    let (x, y) = (mean(0), mean(1));
+    let product = |of: fn(f64, f64) -> f64| points.iter().map(|p| of(p[0].ln() - x, p[1].ln() - y)).sum::<f64>();
+    product(|a, b| a * b) / product(|a, _| a * a)
+}
+
+type Field = fn([f64; 2]) -> f64;
+
+/// A known solution.
+struct Known {
+    u: Field,
+    gradient: fn([f64; 2]) -> [f64; 2],
+    laplacian: Field,
+}
+
+const QUADRATIC: Known = Known {
+    u: |[x, y]| 3.0 * x * x - 2.0 * x * y + 5.0 * y * y + x - 7.0 * y + 2.0,
+    gradient: |[x, y]| [6.0 * x - 2.0 * y + 1.0, -2.0 * x + 10.0 * y - 7.0],
+    laplacian: |_| 16.0,
+};
+const CUBIC: Known = Known {
+    u: |[x, y]| x.powi(3) - 3.0 * x * y * y + x * x * y,
+    gradient: |[x, y]| [3.0 * x * x - 3.0 * y * y + 2.0 * x * y, -6.0 * x * y + x * x],
+    laplacian: |[_, y]| 2.0 * y,
+};
+const QUARTIC: Known = Known {
+    u: |[x, y]| x.powi(4) - 2.0 * x * x * y * y + y.powi(3) * x,
+    gradient: |[x, y]| [4.0 * x.powi(3) - 4.0 * x * y * y + y.powi(3), -4.0 * x * x * y + 3.0 * y * y * x],
+    laplacian: |[x, y]| 12.0 * x * x - 4.0 * y * y - 4.0 * x * x + 6.0 * x * y,
+};
+const SMOOTH: Known = Known {
+    u: |[x, y]| x.exp() * y.cos() + x * x - y * y / 2.0,
+    gradient: |[x, y]| [x.exp() * y.cos() + 2.0 * x, -x.exp() * y.sin() - y],
+    laplacian: |_| 1.0,
+};
+
+/// A square with a round hole in it.
+fn holed(radius: f64) -> Section {
+    let hole = Outline::circle([0.55, 0.45], radius);
+    Section { contour: Outline::rectangle([0.0, 0.0], [1.0, 1.0]), holes: vec![hole] }
+}
+
+fn mesh(section: &Section, n: usize, irregularity: f64) -> Mesh {
+    let params = CloudParams { nodes: [n, n], irregularity, ..CloudParams::default() };
+    Mesh::constrained(generate(section, &params).expect("a cloud")).expect("a mesh")
+}
+
+/// Normal of the holed square's edges, out of the material.
+fn normal(section: &Section, edge: usize, p: [f64; 2]) -> [f64; 2] {
+    match edge {
+        0 => [0.0, -1.0],
+        1 => [1.0, 0.0],
+        2 => [0.0, 1.0],
+        3 => [-1.0, 0.0],
+        _ => {
+            let nmt_curve::Curve::Ellipse { centre, .. } = &section.holes[0].edges[0].curve else { return [0.0; 2] };
+            let d = [centre[0] - p[0], centre[1] - p[1]];
+            d.map(|c| c / d[0].hypot(d[1]))
+        }
+    }
+}
+
+/// Largest error at nodes, relative, with fluxes on the edges `with_flux`.
+fn error(section: &Section, mesh: &Mesh, known: &Known, with_flux: &[usize], params: &SolveParams) -> f64 {
+    let flux = |edge: usize| {
+        move |p: [f64; 2]| {
+            let (n, g) = (normal(section, edge, p), (known.gradient)(p));
+            n[0] * g[0] + n[1] * g[1]
+        }
+    };
+    let all = [0, 1, 2, 3, 4].map(flux);
+    let n_edges = 4 + section.holes.len();
+    let fluxes = (0..n_edges).map(|e| with_flux.contains(&e).then_some(&all[e] as &(dyn Fn([f64; 2]) -> f64 + Sync)));
+    let problem = PoissonProblem { source: &known.laplacian, boundary: &known.u, fluxes: fluxes.collect(), section };
+    let solution = solve_poisson(&problem, mesh, params).expect("a solution");
+    let norms = solution.errors(mesh, known.u);
+    norms.max / norms.scale
+}
+
+fn params(formulation: Formulation, order: usize) -> SolveParams {
+    SolveParams { formulation, order, ..SolveParams::default() }
+}
+
+#[test]
+fn every_order_meets_its_polynomials_on_irregular_clouds_with_fluxes_on_curves_too() {
+    let section = holed(0.2);
+    let mesh = mesh(&section, 21, 0.25);
+    for (order, known) in [(2, &QUADRATIC), (3, &CUBIC), (4, &QUARTIC)] {
+        for with_flux in [&[][..], &[1, 2][..], &[4][..], &[0, 1, 4][..]] {
+            for formulation in Formulation::MESHLESS {
+                let found = error(&section, &mesh, known, with_flux, &params(formulation, order));
+                // Rounding times condition; along curves the fluxes' arc lengths are good to 1e-9.
+                assert!(found < 1e-8, "{formulation:?} {order} {with_flux:?}: {found:e}");
+            }
+        }
+    }
+    // The paper's trial functions meet them too, under test functions that make the patch.
+    let paper = SolveParams { trial: Trial::Mwls, test: Test::Hat, ..SolveParams::default() };
+    let found = error(&section, &mesh, &QUADRATIC, &[], &paper);
+    assert!(found < 1e-10, "mwls, hat: {found:e}");
+    for formulation in Formulation::MESHLESS {
+        let smoothing = SolveParams { smoothing: 0.2, ..params(formulation, 2) };
+        let found = error(&section, &mesh, &QUADRATIC, &[1, 4], &smoothing);
+        assert!(found < 1e-8, "{formulation:?} smoothing: {found:e}");
+    }
+}
+
+#[test]
+fn errors_fall_with_the_order_under_mixed_conditions() {
+    let section = holed(0.2);
+    for (formulation, order, least) in [
+        (Formulation::Variational, 2, 1.8),
+        (Formulation::Variational, 4, 3.5),
+        (Formulation::Local, 2, 1.8),
+        (Formulation::Local, 4, 3.5),
+        (Formulation::Fem, 2, 1.8),
+    ] {
+        for irregularity in [0.0, 0.25] {
+            let points: Vec<[f64; 2]> = [11, 21, 41]
+                .iter()
+                .map(|&n| {
+                    let mesh = mesh(&section, n, irregularity);
+                    [1.0 / n as f64, error(&section, &mesh, &SMOOTH, &[1, 4], &params(formulation, order))]
+                })
+                .collect();
+            assert!(slope(&points) > least, "{formulation:?} {order} {irregularity}: {points:?}");
+        }
+    }
+}
+
+#[test]
+fn fluxes_alone_and_data_that_are_not_finite_are_told() {
+    let section = Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0]));
+    let mesh = mesh(&section, 9, 0.0);
+    let zero: &(dyn Fn([f64; 2]) -> f64 + Sync) = &|_| 0.0;
+    let solve = |problem: PoissonProblem| solve_poisson(&problem, &mesh, &SolveParams::default()).map(|s| s.unknowns);
+    let problem = PoissonProblem { source: zero, boundary: zero, fluxes: vec![Some(zero); 4], section: &section };
+    assert_eq!(solve(problem.clone()), Err(MfdmError::NoValue));
+    let infinite = |p: [f64; 2]| 1.0 / (p[0] - p[0]);
+    let errors = [
+        solve(PoissonProblem { source: &infinite, fluxes: vec![], ..problem.clone() }),
+        solve(PoissonProblem { boundary: &infinite, fluxes: vec![], ..problem.clone() }),
+        solve(PoissonProblem { fluxes: vec![None, Some(&infinite)], ..problem }),
+    ];
+    let quantities = errors.map(|error| match error {
+        Err(MfdmError::Datum { quantity, .. }) => quantity,
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(quantities, ["source", "boundary value", "flux"]);
+}
