@@ -42,7 +42,13 @@ for problem in sorted(problems.glob("*.toml")):
     rows = rows_of(where / "nodes.csv")
 
     expect(len(mesh.points) == len(rows) == report["totals"]["nodes"], f"{problem}: numbers of nodes differ")
-    expect(set(mesh.point_data) == {"node", "kind", "F", "tau_zx", "tau_zy", "tau"}, f"{problem}: point data")
+    stars = json.loads((where / "stars.json").read_text())["subdomains"]
+    of_stars = {key for key in stars[0] if key != "name"}
+    expect(set(mesh.point_data) == {"node", "kind", "F", "tau_zx", "tau_zy", "tau"} | {f"star_{key}" for key in of_stars}, f"{problem}: point data")
+    for key in of_stars:
+        values = np.concatenate([part[key] for part in stars])
+        expect(np.array_equal(values, mesh.point_data[f"star_{key}"]), f"{problem}: star_{key} of stars.json and mesh.vtu differ")
+    expect(mesh.point_data["star_residual"].max() < 1e-10, f"{problem}: rows do not reproduce their monomials")
     expect(set(mesh.cell_data) == {"subdomain", "area", "quality", "residual"}, f"{problem}: cell data")
     xy = np.array([[float(row["x"]), float(row["y"])] for row in rows])
     expect(np.array_equal(xy, mesh.points[:, :2]), f"{problem}: coordinates of nodes.csv and mesh.vtu differ")

@@ -78,6 +78,7 @@ fn every_file_is_the_same_to_the_bit_for_one_and_two_threads_and_in_two_runs() {
         "nodes.csv",
         "mesh.vtu",
         "mesh.msh",
+        "stars.json",
         "nodes.svg",
         "mesh.svg",
         "solution.svg",

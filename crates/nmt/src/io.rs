@@ -2,8 +2,10 @@
 
 mod csv;
 mod msh;
+mod stars;
 mod vtu;
 
 pub use csv::{csv_of_clouds, csv_of_solutions};
 pub use msh::{msh_of_meshes, msh_of_solutions};
+pub use stars::{StarArrays, stars_json};
 pub use vtu::{vtu_of_meshes, vtu_of_solutions};

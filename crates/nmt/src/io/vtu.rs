@@ -1,5 +1,6 @@
 //! mesh.vtu: VTK's XML format for unstructured grids, all subdomains in one grid.
 
+use crate::io::stars::StarArrays;
 use crate::pipeline::{MeshPart, SolvedPart};
 use nmt_cloud::NodeKind;
 use nmt_geom::NodeId;
@@ -22,7 +23,9 @@ pub fn vtu_of_meshes(parts: &[MeshPart]) -> String {
     grid.close()
 }
 
-/// The meshes with the solution: `F, tau_zx, tau_zy, tau` at nodes, `residual` |∇²F + 2Gθ| at centroids.
+/// The meshes with the solution: `F, tau_zx, tau_zy, tau` and the stars of the equations (`star_size, star_order,
+/// star_radius, star_condition, star_hidden, star_diagonal, star_residual`, 0 where a node has none) at nodes, `residual`
+/// |∇²F + 2Gθ| at centroids.
 pub fn vtu_of_solutions(parts: &[SolvedPart]) -> String {
     let meshes: Vec<&Mesh> = parts.iter().map(|part| &part.part.mesh).collect();
     let mut grid = Grid::open(&meshes);
@@ -35,6 +38,14 @@ pub fn vtu_of_solutions(parts: &[SolvedPart]) -> String {
     grid.array("tau_zx", "Float64", stresses().map(|stress| stress.zx));
     grid.array("tau_zy", "Float64", stresses().map(|stress| stress.zy));
     grid.array("tau", "Float64", stresses().map(|stress| stress.magnitude()));
+    let stars: Vec<StarArrays> = parts.iter().map(StarArrays::of).collect();
+    grid.array("star_size", "Int64", stars.iter().flat_map(|s| &s.size));
+    grid.array("star_order", "Int64", stars.iter().flat_map(|s| &s.order));
+    grid.array("star_radius", "Float64", stars.iter().flat_map(|s| &s.radius));
+    grid.array("star_condition", "Float64", stars.iter().flat_map(|s| &s.condition));
+    grid.array("star_hidden", "Int64", stars.iter().flat_map(|s| &s.hidden));
+    grid.array("star_diagonal", "Int64", stars.iter().flat_map(|s| &s.diagonal));
+    grid.array("star_residual", "Float64", stars.iter().flat_map(|s| &s.residual));
     grid.out.push_str("</PointData>\n");
     grid.cell_data(&meshes);
     let residual = |s: &SolvedPart| residuals(&s.part.mesh, &s.solution.field, s.solution.g_theta);

@@ -4,11 +4,12 @@ use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
 use crate::report::singular::singular_vertices;
+use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::warnings;
 use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::Point;
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::{StarReport, Stress};
+use nmt_mfdm::Stress;
 use nmt_tri::{Mesh, MeshCensus, TriangleIndex, quality};
 use serde::Serialize;
 
@@ -163,8 +164,11 @@ pub struct QualityReport {
 pub struct SolutionReport {
     /// Formulation.
     pub formulation: &'static str,
-    /// Order p of the equations.
+    /// Order p of the equations; of finite elements 1.
     pub order: usize,
+    /// Trial and test functions and Gauss points of the variational formulation.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub variational: Option<VariationalReport>,
     /// One entry a hole.
     pub holes: Vec<HoleReport>,
     /// Interior nodes + holes under circulation.
@@ -193,8 +197,9 @@ pub struct SolutionReport {
     pub tau_singular_at: Vec<Point>,
     /// ‖b − Ax‖/‖b‖.
     pub linear_residual: f64,
-    /// What became of the stars.
-    pub stars: StarsReport,
+    /// What became of the stars; absent for finite elements, which have none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stars: Option<StarsReport>,
 }
 
 /// One hole.
@@ -209,21 +214,6 @@ pub struct HoleReport {
     pub f: f64,
     /// Area of the polygon through its nodes.
     pub area: f64,
-}
-
-/// What became of the stars of the equations.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StarsReport {
-    /// Nodes in a star.
-    pub size: usize,
-    /// Hidden nodes passed over.
-    pub hidden_nodes_skipped: usize,
-    /// Stars enlarged.
-    pub enlarged: usize,
-    /// Stars of lower order.
-    pub order_lowered: usize,
-    /// Largest condition number.
-    pub worst_condition: f64,
 }
 
 /// Seconds by stage; 0 where nobody held a clock.
@@ -415,10 +405,10 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         f: hole.f,
         area: hole.area,
     };
-    let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, .. } = solution.stars;
     let solution = SolutionReport {
         formulation: params.formulation.name(),
         order: params.order_used(),
+        variational: VariationalReport::of(params),
         holes: part.hole_names.iter().zip(&solution.holes).map(hole).collect(),
         unknowns: solution.unknowns,
         j: solution.j,
@@ -431,7 +421,7 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         tau_max_at: solution.tau_max.at,
         tau_singular_at: singular_vertices(&part.section),
         linear_residual: solution.linear_residual,
-        stars: StarsReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition },
+        stars: StarsReport::of(params, &solution.stars),
     };
     let zero = Some(0.0);
     SubdomainReport {

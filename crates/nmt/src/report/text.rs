@@ -2,6 +2,7 @@
 
 use crate::report::common::CommonEdgeReport;
 use crate::report::model::{PointReport, Report, SmoothingReport, SolutionReport, SubdomainReport};
+use crate::report::stars::StarsReport;
 use std::fmt::Write as _;
 
 /// Width of the left column.
@@ -84,7 +85,7 @@ impl<U: Fn(i32) -> String> Text<U> {
             self.row(
                 "spread of nodes",
                 format!(
-                    "separation {}, fill distance {}, ratio {:.2}, nearest-node distance varies by {:.1} %",
+                    "separation {}{u1}, fill distance {}{u1}, ratio {:.2}, nearest-node distance varies by {:.1} %",
                     number(q.separation),
                     number(q.fill_distance),
                     q.ratio,
@@ -122,24 +123,23 @@ impl<U: Fn(i32) -> String> Text<U> {
 
     fn solution(&mut self, s: &SolutionReport) {
         let (u2, u3, u4) = ((self.length)(2), (self.length)(3), (self.length)(4));
-        self.row("formulation", format!("{}, order {}, {} unknowns", s.formulation, s.order, s.unknowns));
-        let stars = &s.stars;
-        self.row(
-            "stars",
-            format!(
-                "of {} nodes: {} enlarged, {} of lower order, {} hidden nodes skipped, worst condition {:.1}",
-                stars.size, stars.enlarged, stars.order_lowered, stars.hidden_nodes_skipped, stars.worst_condition
-            ),
-        );
+        let functions = s.variational.map_or(String::new(), |v| {
+            format!(", trial {}, test {}, {}", v.trial, v.test, counted(v.gauss, "Gauss point", "Gauss points"))
+        });
+        let formulation = format!("{}, order {}{functions}, {} unknowns", s.formulation, s.order, s.unknowns);
+        self.row("formulation", formulation);
+        if let Some(stars) = &s.stars {
+            self.stars(stars);
+        }
         self.row("linear residual", format!("{:.1e}", s.linear_residual));
         for hole in &s.holes {
             let label = format!("hole \"{}\"", hole.name);
             self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));
         }
-        self.row("J", format!("{}{u4}", number(s.j)));
+        self.row("J = T/(Gθ)", format!("{}{u4}, torsion constant", number(s.j)));
         self.row("torque T", number(s.torque));
         self.row("twist θ", number(s.twist));
-        self.row("W_t = T/τ_max", format!("{}{u3}", number(s.w_t)));
+        self.row("W_t = T/τ_max", format!("{}{u3}, torsional section modulus", number(s.w_t)));
         self.row("F_max", format!("{} at {}", number(s.f_max), place(s.f_max_at)));
         let grows =
             if s.tau_singular_at.is_empty() { "" } else { " (largest at nodes; infinite at re-entrant vertices)" };
@@ -164,6 +164,18 @@ impl<U: Fn(i32) -> String> Text<U> {
             let _ = writeln!(self.out, "  {}", line.trim_end());
         }
         self.out.push('\n');
+    }
+
+    fn stars(&mut self, s: &StarsReport) {
+        let smoothing = s.smoothing.map_or(String::new(), |g| format!(", smoothing {}", number(g)));
+        let sign = if s.wrong_sign > 0 { format!(", {} of wrong sign", s.wrong_sign) } else { String::new() };
+        self.row(
+            "stars",
+            format!(
+                "of {} nodes, {}{smoothing}: {} enlarged, {} of lower order{sign}, {} hidden nodes skipped, worst condition {:.1}",
+                s.size, s.choice, s.enlarged, s.order_lowered, s.hidden_nodes_skipped, s.worst_condition
+            ),
+        );
     }
 
     fn points(&mut self, points: &[PointReport]) {

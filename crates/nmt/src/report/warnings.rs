@@ -8,7 +8,7 @@ use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::{HoleCondition, Load};
+use nmt_mfdm::{Formulation, HoleCondition, Load, StarChoice, Test, Trial};
 
 /// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
 /// nodes beside the boundary.
@@ -76,6 +76,24 @@ pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
     let (name, solution) = (&solved.part.name, &solved.solution);
     let mut warnings = Vec::new();
     let lowered = |n: usize| counted(n, "node", "nodes");
+    let params = &solved.params;
+    if (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Mwls, Test::Trial) {
+        warnings.push(format!(
+            "subdomain \"{name}\": trial = \"mwls\" with test = \"trial\", the paper's form, does not converge on irregular \
+             clouds: J stays 5 to 20 % off however many nodes there are; choose test = \"hat\", or trial = \"blended\""
+        ));
+    }
+    if solution.stars.wrong_sign > 0 {
+        let remedy = match params.stars {
+            StarChoice::Nearest => "choose stars = \"balanced\", or more nodes there",
+            StarChoice::Balanced => "choose larger stars, or more nodes there",
+        };
+        warnings.push(format!(
+            "subdomain \"{name}\": the ∇² rows of {} have a coefficient of the wrong sign at the node itself (star_diagonal \
+             in mesh.vtu shows where); {remedy}",
+            lowered(solution.stars.wrong_sign)
+        ));
+    }
     if solution.stars.order_lowered > 0 {
         warnings.push(format!(
             "subdomain \"{name}\": the stars of {} carry only a polynomial of lower order; \
