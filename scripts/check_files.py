@@ -44,7 +44,9 @@ for problem in sorted(problems.glob("*.toml")):
     expect(len(mesh.points) == len(rows) == report["totals"]["nodes"], f"{problem}: numbers of nodes differ")
     stars = json.loads((where / "stars.json").read_text())["subdomains"]
     of_stars = {key for key in stars[0] if key != "name"}
-    expect(set(mesh.point_data) == {"node", "kind", "F", "tau_zx", "tau_zy", "tau"} | {f"star_{key}" for key in of_stars}, f"{problem}: point data")
+    is_poisson = report["subdomains"][0].get("problem") == "poisson"
+    fields = ("u", "u_x", "u_y", "exact", "error") if is_poisson else ("F", "tau_zx", "tau_zy", "tau")
+    expect(set(mesh.point_data) == {"node", "kind", *fields} | {f"star_{key}" for key in of_stars}, f"{problem}: point data")
     for key in of_stars:
         values = np.concatenate([part[key] for part in stars])
         expect(np.array_equal(values, mesh.point_data[f"star_{key}"]), f"{problem}: star_{key} of stars.json and mesh.vtu differ")
@@ -52,11 +54,14 @@ for problem in sorted(problems.glob("*.toml")):
     expect(set(mesh.cell_data) == {"subdomain", "area", "quality", "residual"}, f"{problem}: cell data")
     xy = np.array([[float(row["x"]), float(row["y"])] for row in rows])
     expect(np.array_equal(xy, mesh.points[:, :2]), f"{problem}: coordinates of nodes.csv and mesh.vtu differ")
-    for name in ("F", "tau_zx", "tau_zy", "tau"):
+    for name in fields:
         values = np.array([float(row[name]) for row in rows])
         expect(np.array_equal(values, mesh.point_data[name]), f"{problem}: {name} of nodes.csv and mesh.vtu differ")
-    expect(np.allclose(np.hypot(mesh.point_data["tau_zx"], mesh.point_data["tau_zy"]), mesh.point_data["tau"], rtol=1e-12),
-           f"{problem}: tau is not the magnitude of its components")
+    if is_poisson:
+        expect(np.array_equal(mesh.point_data["u"] - mesh.point_data["exact"], mesh.point_data["error"]), f"{problem}: error is not u less exact")
+    else:
+        expect(np.allclose(np.hypot(mesh.point_data["tau_zx"], mesh.point_data["tau_zy"]), mesh.point_data["tau"], rtol=1e-12),
+               f"{problem}: tau is not the magnitude of its components")
 
     a, b, c = (mesh.points[triangles[:, k], :2] for k in range(3))
     areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
@@ -66,6 +71,12 @@ for problem in sorted(problems.glob("*.toml")):
         own = mesh.cell_data["subdomain"][0] == number
         expect(own.sum() == subdomain["triangles"], f"{problem}: numbers of triangles differ")
         expect(abs(areas[own].sum() / subdomain["area"] - 1) < 1e-12, f"{problem}: area of the report differs")
+        if is_poisson:
+            own_nodes = triangles[own].ravel()
+            expect(subdomain["u_max"] == mesh.point_data["u"][own_nodes].max(), f"{problem}: u_max")
+            expect(subdomain["u_min"] == mesh.point_data["u"][own_nodes].min(), f"{problem}: u_min")
+            expect(subdomain["errors"]["max"] == np.abs(mesh.point_data["error"][own_nodes]).max(), f"{problem}: error")
+            continue
         expect(all(np.isfinite(subdomain[key]) for key in ("J", "torque", "F_max", "tau_max", "W_t")), f"{problem}: not finite")
         # Integral of the linear interpolant: close to the report's J, which has three digits more. It is off by h², which is a
         # tenth for the 80 nodes of the coarsest problem and a hundredth and less for the others.

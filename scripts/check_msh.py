@@ -39,6 +39,8 @@ rectangle = { from = [4, 1], to = [6, 5] }
 """
 # The same with nodes of its own on every side.
 SEPARATE = WELDED.replace("conforming = true\n", "")
+# Of torsion, and of a Poisson problem.
+FIELDS = ("F", "tau_zx", "tau_zy", "tau", "u", "u_x", "u_y", "exact", "error")
 INTERFACES = {"frame|core 3' / é", *(f"frame|pane {n}" for n in range(1, 5)), "frame|block"}
 
 
@@ -160,7 +162,7 @@ def boxes(file, expect):
 
 def views(file, vtu, triangles, is_welded, expect):
     """The fields of a solution, to the bit."""
-    names = [name for name in ("F", "tau_zx", "tau_zy", "tau") if name in vtu.point_data]
+    names = [name for name in FIELDS if name in vtu.point_data]
     found = {gmsh.view.option.getString(tag, "Name"): tag for tag in gmsh.view.getTags()}
     expect(list(found) == names, f"{file}: views {list(found)}")
     for name, tag in found.items():
@@ -186,7 +188,7 @@ def by_meshio(file, groups, lines, n_nodes, own, vtu, is_welded, expect):
             expect(list(cells) == [kind], f"{file}: cells of {name} by meshio")
             number = len(lines[name]) if kind == "line" else None
             expect(number in (None, len(cells[kind])), f"{file}: number of lines of {name} by meshio")
-    for name in ("F", "tau_zx", "tau_zy", "tau"):
+    for name in FIELDS:
         if name in vtu.point_data and not is_welded:
             by_place = [sorted(zip(m.points.tolist(), m.point_data[name].tolist())) for m in (mesh, vtu)]
             expect(by_place[0] == by_place[1], f"{file}: {name} by meshio")

@@ -22,7 +22,7 @@ pub enum Command {
     Nodes(CloudArgs),
     /// Generate the cloud and its triangular mesh
     Mesh(MeshArgs),
-    /// Solve the Prandtl torsion problem
+    /// Solve the Prandtl torsion problem, or with a `source` the Poisson problem
     Solve(SolveArgs),
     /// Solve by every formulation on the same clouds: unknowns, J, error and time side by side
     Compare(CompareArgs),
@@ -80,6 +80,15 @@ pub struct SolveKeys {
     /// Its Gauss points a triangle: 1, 3, 4, 6, 7 or 12
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub gauss: Option<i64>,
+    /// f(x, y) of the Poisson problem ∇²u = f, which is then solved instead of torsion
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    pub source: Option<String>,
+    /// Its boundary values g(x, y); 0 by default
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    pub boundary: Option<String>,
+    /// Its exact solution u(x, y), for the errors
+    #[arg(long, value_name = "U", allow_hyphen_values = true)]
+    pub exact: Option<String>,
 }
 
 /// Options of `nmt check`.
@@ -136,7 +145,7 @@ pub struct SolveArgs {
     /// Directory for the files (created if need be)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Point at which F and τ are reported; may be repeated
+    /// Point at which F and τ (of a Poisson problem u and its gradient) are reported; may be repeated
     #[arg(long, value_name = "x,y", value_parser = point, allow_hyphen_values = true)]
     pub at: Vec<[f64; 2]>,
 }
@@ -188,6 +197,9 @@ impl ProblemArgs {
             trial: keys.trial.clone(),
             test: keys.test.clone(),
             gauss: keys.gauss,
+            source: keys.source.clone(),
+            boundary: keys.boundary.clone(),
+            exact: keys.exact.clone(),
             ..self.overrides_with_mesh(mesh)
         }
     }

@@ -355,3 +355,57 @@ fn the_report_as_json_has_the_documented_keys_in_order() {
         .collect();
     insta::assert_snapshot!(keys.join(" "));
 }
+
+#[test]
+fn a_poisson_problem_is_checked_solved_and_written() {
+    let shipped = problem("poisson-square.toml");
+    let check = nmt(&["check", &shipped]);
+    assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
+    assert!(text(&check.stdout).contains("Poisson problem, ∇²u = 1, 3 edges with a flux, u = exp(x)"));
+    assert_eq!(json(&nmt(&["check", &shipped, "--json"]))["solves"]["problem"], "poisson");
+
+    let out = scratch("poisson").join("out");
+    let shown = out.display().to_string();
+    let arguments =
+        ["solve", &shipped, "--nodes", "21,23", "--at", "0.25,0.25", "--at", "5,5", "--out", &shown, "--json"];
+    let output = nmt(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let report = json(&output);
+    let part = &report["subdomains"][0];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    assert_eq!((&part["problem"], &part["J"], &part["tau_max"]), (&"poisson".into(), &Value::Null, &Value::Null));
+    assert!(number(&part["errors"]["max_relative"]) < 2e-4, "{part}"); // 3e-5 measured
+    assert_eq!(part["fluxes"].as_array().map(Vec::len), Some(3));
+    let point = &report["points"][0];
+    let exact = 0.25f64.exp() * 0.25f64.cos() + 0.5 * 0.25 * 0.25;
+    assert!((number(&point["u"]) - exact).abs() < 1e-4, "{point}");
+    assert!((number(&point["u_x"]) - 0.25f64.exp() * 0.25f64.cos() - 0.5).abs() < 1e-2, "{point}");
+    assert!(report["points"][1]["u"].is_null() && report["points"][1].get("F").is_none());
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).expect("a result");
+    assert!(read("nodes.csv").starts_with("subdomain,node,x,y,kind,edges,u,u_x,u_y,exact,error\n"));
+    for name in ["u", "u_x", "u_y", "exact", "error", "star_size", "residual"] {
+        assert!(read("mesh.vtu").contains(&format!("Name=\"{name}\"")), "{name}");
+    }
+    assert!(read("mesh.msh").contains("\"error\"") && read("stars.json").contains("\"condition\""));
+    assert!(read("solution.svg").contains("Error"));
+
+    // Options make a Poisson problem of any section.
+    let square =
+        file(&out, "square.toml", "[[subdomain]]\nnodes = [9, 9]\nrectangle = { from = [0, 0], to = [1, 1] }\n");
+    let arguments = ["solve", &square, "--source", "4", "--boundary", "x^2 + y^2", "--exact", "x^2 + y^2"];
+    let output = nmt(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let shown = text(&output.stdout);
+    assert!(shown.contains("error at nodes") && !shown.contains("torsion") && !shown.contains('τ'), "{shown}");
+
+    let output = nmt(&["compare", &shipped]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("has no J to compare"), "{}", text(&output.stderr));
+    let infinite = nmt(&["solve", &square, "--source", "1/(x - x)"]);
+    assert_eq!(infinite.status.code(), Some(1));
+    assert!(
+        text(&infinite.stderr).contains("--source 1/(x - x): subdomain \"s1\": `source` is inf at"),
+        "{}",
+        text(&infinite.stderr)
+    );
+}

@@ -83,7 +83,24 @@ impl Expression {
     /// Exact to rounding (forward differentiation). At a vertical tangent the first derivative is infinite; at a kink
     /// it is that of one branch (`min`, `max`) or 0 (`abs`, `sign`), at a step 0.
     pub fn jet(&self, x: f64) -> Jet {
-        self.program.run(|variable| if variable == 0 { Jet::variable(x) } else { Jet::constant(f64::NAN) })
+        self.jet_along(&[x], 0)
+    }
+
+    /// Value, first and second partial derivative with respect to the variable of number `along`, where the variables have
+    /// `values`; as [`Expression::jet`].
+    ///
+    /// ```
+    /// # use nmt_curve::Expression;
+    /// let u = Expression::parse("x^2*y", &["x", "y"])?;
+    /// assert_eq!(u.jet_along(&[3.0, 2.0], 0).d1, 12.0);
+    /// assert_eq!(u.jet_along(&[3.0, 2.0], 1).d1, 9.0);
+    /// # Ok::<(), nmt_curve::ExpressionError>(())
+    /// ```
+    pub fn jet_along(&self, values: &[f64], along: usize) -> Jet {
+        self.program.run(|variable| {
+            let value = values.get(variable).copied().unwrap_or(f64::NAN);
+            if variable == along { Jet::variable(value) } else { Jet::constant(value) }
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Poisson problems with data of the user's: ∇²u = f, u = g or ∂u/∂n = q on the edges; and the error against a known u.
 
-use crate::blend::NodalPolynomials;
+use crate::blend::{FieldValue, NodalPolynomials};
 use crate::boundary_value::{Discrete, solve_discrete};
 use crate::diagnostics::StarDiagnostics;
 use crate::error::MfdmError;
@@ -8,6 +8,7 @@ use crate::flux::{Flux, Fluxes};
 use crate::gauss::{Rule, seven_points};
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
+use crate::post::residuals_against;
 use crate::solve::Stage;
 use crate::source::Source;
 use crate::stencils::StarReport;
@@ -46,16 +47,16 @@ pub struct PoissonSolution {
     pub star_diagnostics: Vec<StarDiagnostics>,
 }
 
-/// Errors of a solution against the exact one.
+/// Errors of a solution against the exact one, or of its gradient; below, u stands for either.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorNorms {
     /// Largest |u_i − u(x_i)| over nodes.
     pub max: f64,
-    /// (∫(u_h − u)²)^½ of the recovered field.
+    /// (∫|u_h − u|²)^½ of the recovered field.
     pub l2: f64,
     /// Largest |u| over nodes, to make them relative.
     pub scale: f64,
-    /// (∫u²)^½.
+    /// (∫|u|²)^½.
     pub l2_scale: f64,
 }
 
@@ -155,27 +156,69 @@ impl PoissonProblem<'_> {
 impl PoissonSolution {
     /// Errors against the exact solution.
     pub fn errors(&self, mesh: &Mesh, exact: impl Fn(Point) -> f64 + Sync) -> ErrorNorms {
+        let at_node = |node: NodeId, p: Point| {
+            let u = exact(p);
+            Compared { error: (self.u[node.index()] - u).abs(), size: u.abs() }
+        };
+        let inside = |field: &FieldValue, p: Point| {
+            let u = exact(p);
+            Compared { error: (field.value - u).abs(), size: u.abs() }
+        };
+        self.norms(mesh, at_node, inside)
+    }
+
+    /// Errors of the gradient against the exact one: `l2` is the H¹ seminorm of the error.
+    pub fn gradient_errors(&self, mesh: &Mesh, exact: impl Fn(Point) -> [f64; 2] + Sync) -> ErrorNorms {
+        let compared = |found: [f64; 2], p: Point| {
+            let g = exact(p);
+            Compared { error: (found[0] - g[0]).hypot(found[1] - g[1]), size: g[0].hypot(g[1]) }
+        };
+        let at_node = |node: NodeId, p: Point| compared(self.field.at_node(node).gradient, p);
+        self.norms(mesh, at_node, |field, p| compared(field.gradient, p))
+    }
+
+    /// |∇²u − f| of the recovered field at the centroid of every triangle.
+    pub fn residuals(&self, mesh: &Mesh, source: impl Fn(Point) -> f64 + Sync) -> Vec<f64> {
+        residuals_against(mesh, &self.field, source)
+    }
+
+    fn norms(
+        &self,
+        mesh: &Mesh,
+        at_node: impl Fn(NodeId, Point) -> Compared,
+        inside: impl Fn(&FieldValue, Point) -> Compared + Sync,
+    ) -> ErrorNorms {
         let rule = Rule::of(12).unwrap_or_else(seven_points);
-        let largest = |of: &dyn Fn(usize) -> f64| (0..self.u.len()).map(of).fold(0.0f64, f64::max);
         let squares = map_chunks(0..mesh.n_triangles(), |piece| {
             let mut sums = [0.0; 2];
             for t in piece.map(TriId::of) {
                 let corners = mesh.corners(t);
                 for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
                     let p = [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>());
-                    let (found, u) = (self.field.blend(mesh, t, p).value, exact(p));
-                    sums[0] += weight * mesh.area(t) * (found - u).powi(2);
-                    sums[1] += weight * mesh.area(t) * u * u;
+                    let Compared { error, size } = inside(&self.field.blend(mesh, t, p), p);
+                    sums[0] += weight * mesh.area(t) * error * error;
+                    sums[1] += weight * mesh.area(t) * size * size;
                 }
             }
             sums
         });
         let total = |k: usize| squares.iter().map(|sums| sums[k]).sum::<f64>().sqrt();
-        ErrorNorms {
-            max: largest(&|node| (self.u[node] - exact(mesh.xy()[node])).abs()),
-            scale: largest(&|node| exact(mesh.xy()[node]).abs()),
-            l2: total(0),
-            l2_scale: total(1),
+        let mut norms = ErrorNorms { max: 0.0, scale: 0.0, l2: total(0), l2_scale: total(1) };
+        for (node, p) in mesh.xy().iter().enumerate() {
+            let Compared { error, size } = at_node(NodeId::of(node), *p);
+            (norms.max, norms.scale) = (largest(norms.max, error), largest(norms.scale, size));
         }
+        norms
     }
+}
+
+/// A found value beside the exact one.
+struct Compared {
+    error: f64,
+    size: f64,
+}
+
+/// The larger of two; NaN, which is no value at all, wins.
+fn largest(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }

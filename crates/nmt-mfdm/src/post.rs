@@ -6,6 +6,7 @@ mod stress;
 
 pub use extremes::{Extreme, Extremes, extremes};
 pub use residual::residuals;
+pub(crate) use residual::residuals_against;
 pub use stress::{Stress, StressIntegral, stress_integrals};
 
 /// T = 2∫F + 2Σ c_k A_k.

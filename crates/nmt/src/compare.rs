@@ -10,7 +10,7 @@ pub use picture::{time_svg, unknowns_svg};
 pub use text::text;
 
 use crate::error::NmtError;
-use crate::pipeline::{MeshPart, elimination_fault};
+use crate::pipeline::{MeshPart, elimination_fault, torsion_fault};
 use crate::problem::Problem;
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, Test, TorsionProblem, Trial, solve};
 use serde::Serialize;
@@ -198,13 +198,18 @@ impl Comparison {
 /// says why in its row.
 ///
 /// # Errors
-/// [`NmtError::Problem`] where steps of elimination are left out and the mesh is not sound without them.
+/// [`NmtError::Problem`] where steps of elimination are left out and the mesh is not sound without them, or where it is a
+/// Poisson problem.
 pub fn compare(
     problem: &Problem,
     meshes: &[MeshPart],
     exact_j: Option<f64>,
     clock: &mut dyn FnMut() -> f64,
 ) -> Result<Vec<Row>, NmtError> {
+    let remedy = "leave it out for torsion, or give `exact` and see the errors of nmt solve FILE --formulation …";
+    if let Some(fault) = torsion_fault(problem, "has no J to compare", remedy) {
+        return Err(NmtError::Problem(vec![fault]));
+    }
     if let Some(fault) = meshes.iter().find_map(|part| elimination_fault(problem, part)) {
         return Err(NmtError::Problem(vec![fault]));
     }

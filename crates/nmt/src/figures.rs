@@ -1,7 +1,10 @@
 //! The pictures of a run: nodes, mesh and the four panels of the solution, from the pipeline's data.
 
-use crate::pipeline::{MeshPart, SolvedPart};
-use crate::plot::{Caption, Fields, NodeMark, Part, histogram_figure, mesh_figure, nodes_figure, solution_figure};
+use crate::pipeline::{MeshPart, PoissonPart, Solved, SolvedPart};
+use crate::plot::{
+    Caption, Fields, NodeMark, Part, PoissonFields, histogram_figure, mesh_figure, nodes_figure, poisson_figure,
+    solution_figure,
+};
 use crate::problem::Problem;
 use nmt_cloud::{Cloud, NodeKind};
 use nmt_geom::{LoopId, NodeId};
@@ -122,4 +125,43 @@ pub fn solution_svg(problem: &Problem, parts: &[SolvedPart]) -> String {
         })
         .collect();
     solution_figure(&caption(problem), &figures)
+}
+
+/// solution.svg of a Poisson problem: u, its derivatives, and its error where the exact solution is given, otherwise |∇u|.
+pub fn poisson_svg(problem: &Problem, parts: &[PoissonPart]) -> String {
+    struct Values {
+        u_x: Vec<f64>,
+        u_y: Vec<f64>,
+        gradient: Vec<f64>,
+        error: Option<Vec<f64>>,
+    }
+    let values = |solved: &PoissonPart| {
+        let gradients = solved.gradients();
+        Values {
+            u_x: gradients.iter().map(|g| g[0]).collect(),
+            u_y: gradients.iter().map(|g| g[1]).collect(),
+            gradient: gradients.iter().map(|g| g[0].hypot(g[1])).collect(),
+            error: solved.error_at_nodes(),
+        }
+    };
+    let drawn: Vec<(Drawn, Values)> =
+        parts.iter().map(|s| (Drawn::of_mesh(&s.part.name, &s.part.mesh), values(s))).collect();
+    let figures: Vec<(Part, PoissonFields)> = drawn
+        .iter()
+        .zip(parts)
+        .map(|((drawn, values), solved)| {
+            let Values { u_x, u_y, gradient, error } = values;
+            let error = error.as_deref();
+            (drawn.part(), PoissonFields { u: &solved.solution.u, u_x, u_y, gradient, error })
+        })
+        .collect();
+    poisson_figure(&caption(problem), &figures)
+}
+
+/// solution.svg of whatever was solved.
+pub fn solved_svg(problem: &Problem, solved: &Solved) -> String {
+    match solved {
+        Solved::Torsion(parts) => solution_svg(problem, parts),
+        Solved::Poisson(parts) => poisson_svg(problem, parts),
+    }
 }

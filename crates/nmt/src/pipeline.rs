@@ -3,6 +3,10 @@
 //! problem file → clouds → meshes → solutions. Each function takes what the one before gave; [`solve_problem`] calls
 //! them all.
 
+mod poisson;
+
+pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
+
 use crate::error::NmtError;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
@@ -84,6 +88,25 @@ pub struct SolvedPart {
     pub params: SolveParams,
     /// The solution.
     pub solution: TorsionSolution,
+}
+
+/// All subdomains solved: what the problem file asks for.
+#[derive(Clone, Debug)]
+pub enum Solved {
+    /// Torsion.
+    Torsion(Vec<SolvedPart>),
+    /// A Poisson problem.
+    Poisson(Vec<PoissonPart>),
+}
+
+impl Solved {
+    /// The subdomains with their meshes.
+    pub fn parts(&self) -> Vec<&MeshPart> {
+        match self {
+            Self::Torsion(parts) => parts.iter().map(|solved| &solved.part).collect(),
+            Self::Poisson(parts) => parts.iter().map(|solved| &solved.part).collect(),
+        }
+    }
 }
 
 /// Clouds of all subdomains, in the order of the file.
@@ -220,16 +243,30 @@ pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer
     clouds.into_iter().enumerate().map(mesh).collect()
 }
 
-/// Solutions of all subdomains, each alone with F = 0 on its whole outline.
+/// Solutions of all subdomains, of torsion or of a Poisson problem, as the file has it.
+///
+/// # Errors
+/// As [`solutions`] and [`poisson_solutions`].
+pub fn solved(problem: &Problem, meshes: Vec<MeshPart>, observer: &mut Observer) -> Result<Solved, NmtError> {
+    match problem.solve.poisson {
+        None => solutions(problem, meshes, observer).map(Solved::Torsion),
+        Some(_) => poisson_solutions(problem, meshes, observer).map(Solved::Poisson),
+    }
+}
+
+/// Solutions of torsion in all subdomains, each alone with F = 0 on its whole outline.
 ///
 /// # Errors
 /// [`NmtError::Solve`] where the numerics fail; [`NmtError::Problem`] where steps of elimination are left out and the mesh
-/// is not sound without them.
+/// is not sound without them, or where it is a Poisson problem.
 pub fn solutions(
     problem: &Problem,
     meshes: Vec<MeshPart>,
     observer: &mut Observer,
 ) -> Result<Vec<SolvedPart>, NmtError> {
+    if let Some(fault) = torsion_fault(problem, "has no torsion", "leave it out, or call solve_any") {
+        return Err(NmtError::Problem(vec![fault]));
+    }
     if let Some(fault) = meshes.iter().find_map(|part| elimination_fault(problem, part)) {
         return Err(NmtError::Problem(vec![fault]));
     }
@@ -247,6 +284,13 @@ pub fn solutions(
         Ok(SolvedPart { part, params, solution })
     };
     meshes.into_iter().enumerate().map(solve).collect()
+}
+
+/// A Poisson problem where torsion is asked for: what it `does` instead of that, and the remedy.
+pub(crate) fn torsion_fault(problem: &Problem, does: &str, remedy: &str) -> Option<crate::problem::ProblemError> {
+    let source = &problem.solve.poisson.as_ref()?.source;
+    let message = format!("`source` makes this a Poisson problem, which {does}");
+    Some(problem.source.error(&source.place, "", message, remedy))
 }
 
 /// A mesh that is not sound since steps were left out.
@@ -269,7 +313,7 @@ impl From<nmt_mfdm::Stage> for Stage {
     }
 }
 
-/// From a checked problem to the solutions of its subdomains.
+/// From a checked problem of torsion to the solutions of its subdomains.
 ///
 /// # Errors
 /// [`NmtError`] of the first stage that fails.
@@ -278,4 +322,15 @@ pub fn solve_problem(problem: &Problem) -> Result<Vec<SolvedPart>, NmtError> {
     let clouds = clouds(problem, observer)?;
     let meshes = meshes(problem, clouds, observer)?;
     solutions(problem, meshes, observer)
+}
+
+/// From a checked problem, of torsion or of Poisson, to what it asks for.
+///
+/// # Errors
+/// [`NmtError`] of the first stage that fails.
+pub fn solve_any(problem: &Problem) -> Result<Solved, NmtError> {
+    let observer: &mut Observer = &mut |_, _| {};
+    let clouds = clouds(problem, observer)?;
+    let meshes = meshes(problem, clouds, observer)?;
+    solved(problem, meshes, observer)
 }

@@ -1,6 +1,6 @@
 //! The pictures of a problem: its nodes, its mesh and its solution, as SVG and, from the same SVG, as PNG.
 //!
-//! A figure is data before it is text: [`nodes_figure`], [`mesh_figure`] and [`solution_figure`] lay out a scene of paths
+//! A figure is data before it is text: [`nodes_figure`], [`mesh_figure`], [`solution_figure`] lay out a scene of paths
 //! and texts in page units (a page unit is a CSS pixel, 1000 of them are meant for 180 mm of paper) and write it as SVG.
 //! The input is plain slices, so this module knows no other crate. The same input gives the same bytes; coordinates or
 //! values that are NaN, infinite or beyond 1e290 are treated as absent.
@@ -79,6 +79,22 @@ pub struct Fields<'a> {
     pub tau: &'a [f64],
 }
 
+/// The solution of a Poisson problem at the nodes of one part, each of shape (n_nodes,); nodes beyond the end of a slice
+/// have no value.
+#[derive(Clone, Copy, Debug)]
+pub struct PoissonFields<'a> {
+    /// `u`.
+    pub u: &'a [f64],
+    /// `∂u/∂x`.
+    pub u_x: &'a [f64],
+    /// `∂u/∂y`.
+    pub u_y: &'a [f64],
+    /// `|∇u|`.
+    pub gradient: &'a [f64],
+    /// `u` less the exact solution, where that is known.
+    pub error: Option<&'a [f64]>,
+}
+
 /// What is written around a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Caption<'a> {
@@ -103,7 +119,31 @@ pub fn mesh_figure(caption: &Caption<'_>, parts: &[Part<'_>]) -> String {
 /// All parts share one colour scale a panel. Where a few peaks (as at re-entrant corners) lie far above all other values,
 /// the scale ends at the 99.5th percentile, its bar in an arrow, and the bar says how high the peaks are.
 pub fn solution_figure(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> String {
-    svg::render(&solution::scene(caption, parts))
+    let fields: Vec<_> = parts.iter().map(|(part, f)| (*part, [f.f, f.tau_zx, f.tau_zy, f.tau])).collect();
+    // Rounding of the stress, of which the signed panels are the components.
+    let stress = solution::largest(parts.iter().flat_map(|(_, fields)| fields.tau.iter().copied()));
+    let size = |panel: &solution::Panel| if panel.is_signed() { stress } else { 0.0 };
+    svg::render(&solution::scene(caption, &solution::TORSION, &fields, size))
+}
+
+/// SVG text of the solution of a Poisson problem: `u`, its derivatives, and its error, where all parts have one, otherwise
+/// the magnitude of its gradient; as [`solution_figure`].
+pub fn poisson_figure(caption: &Caption<'_>, parts: &[(Part<'_>, PoissonFields<'_>)]) -> String {
+    let has_error = !parts.is_empty() && parts.iter().all(|(_, fields)| fields.error.is_some());
+    let fields: Vec<_> = parts
+        .iter()
+        .map(|(part, f)| (*part, [f.u, f.u_x, f.u_y, f.error.filter(|_| has_error).unwrap_or(f.gradient)]))
+        .collect();
+    let mut panels = solution::POISSON;
+    if has_error {
+        panels[3] = solution::ERROR;
+    }
+    // Rounding of the gradient, of which the signed panels but that of the error are the components.
+    let gradient = solution::largest(parts.iter().flat_map(|(_, fields)| fields.gradient.iter().copied()));
+    let size = |panel: &solution::Panel| {
+        if panel.is_signed() && *panel != solution::ERROR { gradient } else { 0.0 }
+    };
+    svg::render(&solution::scene(caption, &panels, &fields, size))
 }
 
 /// One line of the picture of errors.

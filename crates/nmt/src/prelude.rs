@@ -1,6 +1,6 @@
 //! The names of the README's example.
 
-pub use crate::pipeline::{SolvedPart, solve_problem};
+pub use crate::pipeline::{Solved, SolvedPart, solve_any, solve_problem};
 pub use crate::problem::{Overrides, Problem};
 pub use nmt_cloud::{CloudParams, Section, generate};
 pub use nmt_curve::Outline;

@@ -11,7 +11,9 @@
 
 mod check;
 mod error;
+mod formula;
 mod limits;
+mod poisson;
 mod read;
 mod schema;
 mod shape;
@@ -21,7 +23,8 @@ mod syntax;
 mod tree;
 
 pub use error::{Place, ProblemError, Source};
-pub use schema::{Hole, MeshMethod, MeshSettings, Overrides, Problem, SolveSettings, Subdomain};
+pub use formula::Formula;
+pub use schema::{Hole, MeshMethod, MeshSettings, Overrides, PoissonSettings, Problem, SolveSettings, Subdomain};
 
 use error::Faults;
 use read::{Draft, HoleDraft, SubdomainDraft};
@@ -64,7 +67,10 @@ fn complete(draft: Draft, source: Source) -> Option<Problem> {
 
 fn subdomain(draft: SubdomainDraft) -> Option<Subdomain> {
     let contour = draft.contour?;
+    let of_holes = draft.holes.iter().filter_map(|hole| hole.shape.as_ref());
+    let fluxes = std::iter::once(&contour).chain(of_holes).flat_map(|shape| shape.fluxes.clone()).collect();
     Some(Subdomain {
+        fluxes,
         name: draft.name,
         nodes: draft.nodes?,
         irregularity: draft.irregularity,

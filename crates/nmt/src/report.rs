@@ -2,17 +2,21 @@
 
 mod common;
 mod model;
+mod points;
+mod poisson;
 mod singular;
+mod solves;
 mod stars;
 mod text;
 mod thickness;
 mod warnings;
 
 pub use common::CommonEdgeReport;
-pub use model::{
-    CensusReport, HoleReport, PointReport, QualityReport, Report, Seconds, SolutionReport, SubdomainReport, Totals,
-};
+pub use model::{CensusReport, HoleReport, QualityReport, Report, Seconds, SolutionReport, SubdomainReport, Totals};
+pub use points::{PointReport, PointValues};
+pub use poisson::{ErrorReport, FluxReport, PoissonReport};
 pub use singular::singular_vertices;
+pub use solves::SolvesReport;
 pub use stars::{StarsReport, VariationalReport};
 pub use text::{place, text};
 pub use thickness::{FEWEST_ACROSS, ThinSpot, thinnest};

@@ -83,7 +83,7 @@ const CASES: &[Case] = &[
     case("a key of another table", &[("seed = 20170301", "irregularity = 0.25")]),
     case("a hole beside its subdomain", &[("[[subdomain.hole]]", "[[hole]]")]),
     case("a table that does not exist", &[("[solve]", "[meshes]\nmethod = \"constrained\"\n[solve]")]),
-    case("a key that no table knows", &[("order = 2", "order = 2\nsource = \"x\"")]),
+    case("a key that no table knows", &[("order = 2", "order = 2\ncolour = \"x\"")]),
     case("a key with a blank", &[("units", "\"my units\"")]),
     // Subdomains and names.
     case("nothing at all", &[(SOUND, "")]),

@@ -26,20 +26,31 @@ pub fn results(file: &Path) -> Result<Vec<Entry>> {
     for formulation in Formulation::ALL {
         let overrides = Overrides { formulation: Some(formulation.name().into()), ..Overrides::default() };
         let problem = read_problem(file, &overrides)?;
-        for solved in solve_problem(&problem)? {
-            let (mesh, solution) = (&solved.part.mesh, &solved.solution);
+        let solved = solve_any(&problem)?;
+        for (k, part) in solved.parts().into_iter().enumerate() {
+            let mesh = &part.mesh;
             let mut add = |quantity: &str, value: f64| {
-                let id = format!("{},{},{quantity}", formulation.name(), solved.part.name);
+                let id = format!("{},{},{quantity}", formulation.name(), part.name);
                 entries.push(Entry { id, value, scale: Scale::Itself });
             };
             add("nodes", mesh.cloud().n_nodes() as f64);
             add("triangles", mesh.n_triangles() as f64);
             add("area", mesh.total_area());
-            add("J", solution.j);
-            add("F_max", solution.f_max.value);
-            add("tau_max", solution.tau_max.value);
-            for (name, hole) in solved.part.hole_names.iter().zip(&solution.holes) {
-                add(&format!("F on {name}"), hole.f);
+            match &solved {
+                Solved::Torsion(parts) => {
+                    let solution = &parts[k].solution;
+                    add("J", solution.j);
+                    add("F_max", solution.f_max.value);
+                    add("tau_max", solution.tau_max.value);
+                    for (name, hole) in part.hole_names.iter().zip(&solution.holes) {
+                        add(&format!("F on {name}"), hole.f);
+                    }
+                }
+                Solved::Poisson(parts) => {
+                    let magnitude = |[x, y]: [f64; 2]| x.hypot(y);
+                    add("integral of u", parts[k].solution.field.volume(mesh));
+                    add("largest gradient", parts[k].gradients().into_iter().map(magnitude).fold(0.0, f64::max));
+                }
             }
         }
     }

@@ -1,13 +1,13 @@
-//! `nmt solve`: torsion of the section.
+//! `nmt solve`: torsion of the section, or the Poisson problem of the file.
 
 use super::{finish, load};
 use crate::args::SolveArgs;
 use crate::exit::Failure;
 use crate::files::OutDir;
 use crate::timing::Stopwatch;
-use nmt::figures::{mesh_svg, nodes_svg, solution_svg};
-use nmt::io::{csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
-use nmt::pipeline::{clouds, meshes, solutions};
+use nmt::figures::{mesh_svg, nodes_svg, solved_svg};
+use nmt::io::{NodeFields, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
+use nmt::pipeline::{clouds, meshes, solved};
 use nmt::report::Report;
 
 /// Runs the command.
@@ -15,19 +15,21 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
     let mut lap = |k, stage| watch.lap(k, stage);
-    let parts = clouds(&problem, &mut lap)
+    let solved = clouds(&problem, &mut lap)
         .and_then(|clouds| meshes(&problem, clouds, &mut lap))
-        .and_then(|meshes| solutions(&problem, meshes, &mut lap))
+        .and_then(|meshes| solved(&problem, meshes, &mut lap))
         .map_err(|e| Failure::of(e, &problem.source))?;
     if let Some(out) = &args.out {
         let out = OutDir::create(out)?;
-        out.write("nodes.csv", csv_of_solutions(&parts))?;
-        out.write("mesh.vtu", vtu_of_solutions(&parts))?;
-        out.write("mesh.msh", msh_of_solutions(&parts))?;
-        out.write("stars.json", stars_json(&parts).map_err(|error| Failure::Json(error.to_string()))?)?;
-        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.part.name, p.part.mesh.cloud()))))?;
-        out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.part.name, &p.part.mesh))))?;
-        out.write_picture("solution", &solution_svg(&problem, &parts))?;
+        let fields = NodeFields::of(&solved);
+        out.write("nodes.csv", csv_of_solutions(&fields))?;
+        out.write("mesh.vtu", vtu_of_solutions(&fields))?;
+        out.write("mesh.msh", msh_of_solutions(&fields))?;
+        out.write("stars.json", stars_json(&fields).map_err(|error| Failure::Json(error.to_string()))?)?;
+        let parts = solved.parts();
+        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
+        out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
+        out.write_picture("solution", &solved_svg(&problem, &solved))?;
     }
-    finish(Report::of_solutions(&problem, &parts, &args.at), &watch, args.problem.json, args.out.as_deref())
+    finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, args.out.as_deref())
 }

@@ -1,9 +1,8 @@
 //! nodes.csv: one row a node.
 
-use crate::pipeline::SolvedPart;
+use crate::io::fields::NodeFields;
 use nmt_cloud::Cloud;
 use nmt_geom::NodeId;
-use nmt_mfdm::Stress;
 use std::fmt::Write as _;
 
 /// `subdomain,node,x,y,kind,edges`, node from 0 in each subdomain, edges joined by `;`, 17 significant digits.
@@ -19,18 +18,21 @@ pub fn csv_of_clouds<'a>(parts: impl IntoIterator<Item = (&'a str, &'a [String],
     out
 }
 
-/// The same with `F,tau_zx,tau_zy,tau`, τ from the node's own polynomial.
-pub fn csv_of_solutions(parts: &[SolvedPart]) -> String {
-    let mut out = String::from("subdomain,node,x,y,kind,edges,F,tau_zx,tau_zy,tau\n");
-    for SolvedPart { part, solution, .. } in parts {
+/// The same with the fields at nodes: `F,tau_zx,tau_zy,tau` of torsion.
+pub fn csv_of_solutions(parts: &[NodeFields]) -> String {
+    let mut out = String::from("subdomain,node,x,y,kind,edges");
+    for (name, _) in parts.first().map_or(&[][..], |fields| &fields.at_nodes) {
+        // Writing to a string cannot fail.
+        let _ = write!(out, ",{name}");
+    }
+    out.push('\n');
+    for NodeFields { part, at_nodes, .. } in parts {
         let cloud = part.mesh.cloud();
         let rows = Rows::new(&part.name, &part.edge_names, cloud);
         for node in (0..cloud.n_nodes()).map(NodeId::of) {
             rows.write(&mut out, node);
-            let stress: Stress = solution.stress_at_node(node);
-            for value in [solution.f[node.index()], stress.zx, stress.zy, stress.magnitude()] {
-                // Writing to a string cannot fail.
-                let _ = write!(out, ",{value:.16e}");
+            for (_, values) in at_nodes {
+                let _ = write!(out, ",{:.16e}", values[node.index()]);
             }
             out.push('\n');
         }

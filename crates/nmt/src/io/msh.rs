@@ -3,7 +3,8 @@
 mod model;
 mod names;
 
-use crate::pipeline::{MeshPart, SolvedPart};
+use crate::io::fields::NodeFields;
+use crate::pipeline::MeshPart;
 use model::{Entity, Model};
 use nmt_geom::{Bbox, NodeId, Point};
 use std::fmt::Write as _;
@@ -23,19 +24,15 @@ pub fn msh_of_meshes(parts: &[MeshPart]) -> String {
     Msh::of(&Model::new(&parts), &parts).out
 }
 
-/// The meshes with `F, tau_zx, tau_zy, tau` at nodes as views; where subdomains share nodes, at the nodes of triangles,
-/// since each subdomain has values of its own there.
-pub fn msh_of_solutions(solved: &[SolvedPart]) -> String {
-    let parts: Vec<&MeshPart> = solved.iter().map(|s| &s.part).collect();
+/// The meshes with the fields of the solution (`F, tau_zx, tau_zy, tau` of torsion) at nodes as views; where subdomains share
+/// nodes, at the nodes of triangles, since each subdomain has values of its own there.
+pub fn msh_of_solutions(solved: &[NodeFields]) -> String {
+    let parts: Vec<&MeshPart> = solved.iter().map(|fields| fields.part).collect();
     let model = Model::new(&parts);
     let mut msh = Msh::of(&model, &parts);
-    let nodes = |s: &SolvedPart| (0..s.part.mesh.cloud().n_nodes()).map(NodeId::of);
-    let stresses: Vec<Vec<_>> =
-        solved.iter().map(|s| nodes(s).map(|node| s.solution.stress_at_node(node)).collect()).collect();
-    msh.view("F", &model, &parts, |k, node| solved[k].solution.f[node.index()]);
-    msh.view("tau_zx", &model, &parts, |k, node| stresses[k][node.index()].zx);
-    msh.view("tau_zy", &model, &parts, |k, node| stresses[k][node.index()].zy);
-    msh.view("tau", &model, &parts, |k, node| stresses[k][node.index()].magnitude());
+    for (field, (name, _)) in solved.first().map_or(&[][..], |fields| &fields.at_nodes).iter().enumerate() {
+        msh.view(name, &model, &parts, |k, node| solved[k].at_nodes[field].1[node.index()]);
+    }
     msh.out
 }
 

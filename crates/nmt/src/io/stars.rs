@@ -1,6 +1,6 @@
 //! stars.json: the star of every node in the equations.
 
-use crate::pipeline::SolvedPart;
+use crate::io::fields::NodeFields;
 use nmt_mfdm::StarDiagnostics;
 use serde::Serialize;
 
@@ -29,14 +29,14 @@ pub struct StarArrays {
 
 impl StarArrays {
     /// The stars of a solved subdomain; every number is finite.
-    pub fn of(solved: &SolvedPart) -> Self {
-        let mut stars = solved.solution.star_diagnostics.clone();
-        stars.resize(solved.part.mesh.cloud().n_nodes(), StarDiagnostics::default());
+    pub fn of(fields: &NodeFields) -> Self {
+        let mut stars = fields.stars.to_vec();
+        stars.resize(fields.part.mesh.cloud().n_nodes(), StarDiagnostics::default());
         let finite = |of: fn(&StarDiagnostics) -> f64| -> Vec<f64> {
             stars.iter().map(of).map(|value| if value.is_finite() { value } else { 0.0 }).collect()
         };
         Self {
-            name: solved.part.name.clone(),
+            name: fields.part.name.clone(),
             radius: finite(|star| star.radius),
             condition: finite(|star| star.condition),
             residual: finite(|star| star.residual),
@@ -53,7 +53,7 @@ impl StarArrays {
 ///
 /// # Errors
 /// Where JSON cannot hold a value, which it can every star's.
-pub fn stars_json(parts: &[SolvedPart]) -> Result<String, serde_json::Error> {
+pub fn stars_json(parts: &[NodeFields]) -> Result<String, serde_json::Error> {
     #[derive(Serialize)]
     struct Stars {
         subdomains: Vec<StarArrays>,

@@ -1,10 +1,10 @@
 //! mesh.vtu: VTK's XML format for unstructured grids, all subdomains in one grid.
 
+use crate::io::fields::NodeFields;
 use crate::io::stars::StarArrays;
-use crate::pipeline::{MeshPart, SolvedPart};
+use crate::pipeline::MeshPart;
 use nmt_cloud::NodeKind;
 use nmt_geom::NodeId;
-use nmt_mfdm::residuals;
 use nmt_tri::{Mesh, shape};
 use std::fmt::{Display, Write as _};
 
@@ -23,21 +23,16 @@ pub fn vtu_of_meshes(parts: &[MeshPart]) -> String {
     grid.close()
 }
 
-/// The meshes with the solution: `F, tau_zx, tau_zy, tau` and the stars of the equations (`star_size, star_order,
+/// The meshes with the solution: its fields (`F, tau_zx, tau_zy, tau` of torsion) and the stars of the equations (`star_size, star_order,
 /// star_radius, star_condition, star_hidden, star_diagonal, star_residual`, 0 where a node has none) at nodes, `residual`
-/// |∇²F + 2Gθ| at centroids.
-pub fn vtu_of_solutions(parts: &[SolvedPart]) -> String {
-    let meshes: Vec<&Mesh> = parts.iter().map(|part| &part.part.mesh).collect();
+/// of the differential equation at centroids.
+pub fn vtu_of_solutions(parts: &[NodeFields]) -> String {
+    let meshes: Vec<&Mesh> = parts.iter().map(|fields| &fields.part.mesh).collect();
     let mut grid = Grid::open(&meshes);
     grid.point_data(&meshes);
-    let stresses = || {
-        let nodes = |s: &SolvedPart| 0..s.part.mesh.cloud().n_nodes();
-        parts.iter().flat_map(move |s| nodes(s).map(|node| s.solution.stress_at_node(NodeId::of(node))))
-    };
-    grid.array("F", "Float64", parts.iter().flat_map(|s| s.solution.f.iter().copied()));
-    grid.array("tau_zx", "Float64", stresses().map(|stress| stress.zx));
-    grid.array("tau_zy", "Float64", stresses().map(|stress| stress.zy));
-    grid.array("tau", "Float64", stresses().map(|stress| stress.magnitude()));
+    for (k, (name, _)) in parts.first().map_or(&[][..], |fields| &fields.at_nodes).iter().enumerate() {
+        grid.array(name, "Float64", parts.iter().flat_map(|fields| fields.at_nodes[k].1.iter().copied()));
+    }
     let stars: Vec<StarArrays> = parts.iter().map(StarArrays::of).collect();
     grid.array("star_size", "Int64", stars.iter().flat_map(|s| &s.size));
     grid.array("star_order", "Int64", stars.iter().flat_map(|s| &s.order));
@@ -48,8 +43,7 @@ pub fn vtu_of_solutions(parts: &[SolvedPart]) -> String {
     grid.array("star_residual", "Float64", stars.iter().flat_map(|s| &s.residual));
     grid.out.push_str("</PointData>\n");
     grid.cell_data(&meshes);
-    let residual = |s: &SolvedPart| residuals(&s.part.mesh, &s.solution.field, s.solution.g_theta);
-    grid.array("residual", "Float64", parts.iter().flat_map(residual));
+    grid.array("residual", "Float64", parts.iter().flat_map(|fields| fields.residual.iter().copied()));
     grid.close()
 }
 

@@ -1,4 +1,4 @@
-//! The picture of a solution: four panels of filled contours, each with its colour bar.
+//! The picture of a solution, of torsion or of a Poisson problem: four panels of filled contours, each with its colour bar.
 
 use super::axes::{Axes, Extent, LEAST_FRAME, Margins, View};
 use super::colour::{Map, Rgb};
@@ -11,7 +11,7 @@ use super::scene::{Anchor, Point, Polyline, Precision, Scene, Shape, Stroke};
 use super::simplify;
 use super::text::{Run, Style, width};
 use super::topology::Topology;
-use super::{Caption, Fields, Part, is_drawable};
+use super::{Caption, Part, is_drawable};
 
 /// Contours are thinned by this many page units.
 const TOLERANCE: f64 = 0.1;
@@ -36,59 +36,42 @@ const WORTH_REARRANGING: f64 = 1.2;
 /// A component of the stress smaller than this share of the largest stress is rounding, hence zero.
 const NOISE_REL: f64 = 1.0e-9;
 
-/// One of the four fields.
-struct Panel {
-    letter: char,
+/// One of the four fields: how it is drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Panel {
     name: &'static str,
     symbol: &'static str,
     subscript: &'static str,
     map: Map,
-    values: for<'a> fn(&Fields<'a>) -> &'a [f64],
     id: &'static str,
 }
 
-const PANELS: [Panel; 4] = [
-    Panel {
-        letter: 'a',
-        name: "Prandtl function",
-        symbol: "F",
-        subscript: "",
-        map: Map::Sequential,
-        values: |fields| fields.f,
-        id: "F",
-    },
-    Panel {
-        letter: 'b',
-        name: "Shear stress",
-        symbol: "τ",
-        subscript: "zx",
-        map: Map::Diverging,
-        values: |fields| fields.tau_zx,
-        id: "tau-zx",
-    },
-    Panel {
-        letter: 'c',
-        name: "Shear stress",
-        symbol: "τ",
-        subscript: "zy",
-        map: Map::Diverging,
-        values: |fields| fields.tau_zy,
-        id: "tau-zy",
-    },
-    Panel {
-        letter: 'd',
-        name: "Resultant shear stress",
-        symbol: "τ",
-        subscript: "",
-        map: Map::Sequential,
-        values: |fields| fields.tau,
-        id: "tau",
-    },
+/// The letter of each panel.
+const LETTERS: [char; 4] = ['a', 'b', 'c', 'd'];
+
+/// Torsion: F, τ_zx, τ_zy, τ.
+pub(super) const TORSION: [Panel; 4] = [
+    Panel { name: "Prandtl function", symbol: "F", subscript: "", map: Map::Sequential, id: "F" },
+    Panel { name: "Shear stress", symbol: "τ", subscript: "zx", map: Map::Diverging, id: "tau-zx" },
+    Panel { name: "Shear stress", symbol: "τ", subscript: "zy", map: Map::Diverging, id: "tau-zy" },
+    Panel { name: "Resultant shear stress", symbol: "τ", subscript: "", map: Map::Sequential, id: "tau" },
 ];
+
+/// A Poisson problem: u, its derivatives, the magnitude of its gradient.
+pub(super) const POISSON: [Panel; 4] = [
+    Panel { name: "Solution", symbol: "u", subscript: "", map: Map::Sequential, id: "u" },
+    Panel { name: "Derivative", symbol: "u", subscript: ",x", map: Map::Diverging, id: "u-x" },
+    Panel { name: "Derivative", symbol: "u", subscript: ",y", map: Map::Diverging, id: "u-y" },
+    Panel { name: "Magnitude of the gradient", symbol: "|∇u|", subscript: "", map: Map::Sequential, id: "gradient" },
+];
+
+/// The last panel of a Poisson problem whose exact solution is known.
+pub(super) const ERROR: Panel =
+    Panel { name: "Error", symbol: "u − u", subscript: "exact", map: Map::Diverging, id: "error" };
 
 impl Panel {
     /// `(a) Prandtl function F`, without the words where there is no room for them.
-    fn title(&self, room: f64) -> Vec<Run> {
+    fn title(&self, letter: char, room: f64) -> Vec<Run> {
         let build = |words: String| {
             let mut runs = vec![Run::upright(words), Run::new(self.symbol, Style::Italic)];
             if !self.subscript.is_empty() {
@@ -96,8 +79,8 @@ impl Panel {
             }
             runs
         };
-        let long = build(format!("({}) {} ", self.letter, self.name));
-        if width(&long, PANEL_TITLE_SIZE) <= room { long } else { build(format!("({}) ", self.letter)) }
+        let long = build(format!("({letter}) {} ", self.name));
+        if width(&long, PANEL_TITLE_SIZE) <= room { long } else { build(format!("({letter}) ")) }
     }
 }
 
@@ -130,8 +113,14 @@ impl Arrangement {
     }
 }
 
-/// The figure of the solution on all parts.
-pub(super) fn scene(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> Scene {
+/// The figure of the solution on all parts: for each the values of the four `panels`; `size`, the largest magnitude of the
+/// vector whose components are those of the signed panels, tells what is rounding in them.
+pub(super) fn scene(
+    caption: &Caption<'_>,
+    panels: &[Panel; 4],
+    parts: &[(Part<'_>, [&[f64]; 4])],
+    size: impl Fn(&Panel) -> f64,
+) -> Scene {
     let extent = Extent::of(parts.iter().map(|(part, _)| part));
     let arrangement = Arrangement::best(&extent);
     let axes = Axes::new(View::fit(&extent, arrangement.room()), caption.units);
@@ -139,15 +128,11 @@ pub(super) fn scene(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> 
     let head = HEAD.max(top);
     let [frame_width, frame_height] = axes.view.size;
 
-    let all_values = |panel: &Panel| parts.iter().flat_map(panel.values_of()).collect::<Vec<f64>>();
-    let stress = all_values(&PANELS[3]).into_iter().filter(|&v| is_drawable(v)).fold(0.0, |m: f64, v| m.max(v.abs()));
-    let scales: Vec<Option<Scale>> = PANELS
-        .iter()
-        .map(|panel| {
-            let noise = if panel.map == Map::Diverging { NOISE_REL * stress } else { 0.0 };
-            Scale::new(all_values(panel).into_iter(), panel.map, noise)
-        })
-        .collect();
+    let noise: [f64; 4] = std::array::from_fn(|k| NOISE_REL * size(&panels[k]));
+    let values = |k: usize| {
+        parts.iter().flat_map(move |(part, fields)| fields[k][..fields[k].len().min(part.xy.len())].iter().copied())
+    };
+    let scales: [Option<Scale>; 4] = std::array::from_fn(|k| Scale::new(values(k), panels[k].map, noise[k]));
     let bars = scales.iter().flatten().map(|scale| scale.bar_width(frame_height)).fold(0.0, f64::max);
     let cell = [left + frame_width + right.max(BAR_GAP + bars), head + frame_height + bottom];
     let total = |k: usize, n: usize| cell[k] * n as f64 + CELL_GAP[k] * (n - 1) as f64;
@@ -156,45 +141,36 @@ pub(super) fn scene(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) -> 
     let page_width = page_width(caption, content);
     let (mut shapes, title_height) = title(caption, page_width);
     let corner = [0.5 * (page_width - content), MARGIN + title_height];
-    for (number, (panel, scale)) in PANELS.iter().zip(&scales).enumerate() {
+    for (number, (panel, scale)) in panels.iter().zip(&scales).enumerate() {
         let (column, row) = (number % arrangement.columns, number / arrangement.columns);
         let x = corner[0] + column as f64 * (cell[0] + CELL_GAP[0]) + left;
         let y = corner[1] + row as f64 * (cell[1] + CELL_GAP[1]) + head;
-        let noise = if panel.map == Map::Diverging { NOISE_REL * stress } else { 0.0 };
-        shapes.push(draw_panel(panel, scale.as_ref(), parts, noise, &axes, [x, y]));
+        let fields: Vec<(&Part, &[f64])> = parts.iter().map(|(part, fields)| (part, fields[number])).collect();
+        let title = panel.title(LETTERS[number], frame_width);
+        let drawn = panel_shapes(scale.as_ref(), &fields, noise[number], &axes, [x, y], title);
+        shapes.push(Shape::Group { id: panel.id, shapes: drawn });
     }
     let height = corner[1] + total(1, arrangement.rows) + MARGIN;
     Scene { width: page_width, height: height.ceil(), description: description(caption, "solution"), shapes }
 }
 
-impl Panel {
-    fn values_of<'a, 'b>(&self) -> impl Fn(&'b (Part<'a>, Fields<'a>)) -> std::iter::Copied<std::slice::Iter<'a, f64>> {
-        let values = self.values;
-        move |(part, fields)| {
-            let of_field: &'a [f64] = values(fields);
-            of_field[..of_field.len().min(part.xy.len())].iter().copied()
-        }
-    }
-}
-
-fn draw_panel(
-    panel: &Panel,
+fn panel_shapes(
     scale: Option<&Scale>,
-    parts: &[(Part<'_>, Fields<'_>)],
+    parts: &[(&Part<'_>, &[f64])],
     noise: f64,
     axes: &Axes,
     origin: Point,
-) -> Shape {
+    title: Vec<Run>,
+) -> Vec<Shape> {
     let [frame_width, frame_height] = axes.view.size;
     let mut shapes = Vec::new();
     let mut rims = Vec::new();
-    for (part, fields) in parts {
+    for (part, values) in parts {
         let points = page_points(part, &|p| axes.view.to_page(origin, p));
         rims.extend(outlines(part, &points));
         if let Some(scale) = scale {
             // Rounding about zero would draw its own islands: below the noise, zero is zero.
-            let denoised: Vec<f64> =
-                (panel.values)(fields).iter().map(|&v| if v.abs() < noise { 0.0 } else { v }).collect();
+            let denoised: Vec<f64> = values.iter().map(|&v| if v.abs() < noise { 0.0 } else { v }).collect();
             shapes.extend(filled_contours(part, &points, &denoised, scale));
         }
     }
@@ -205,8 +181,20 @@ fn draw_panel(
     }
     shapes.push(axes.draw(origin));
     let title_at = [origin[0] + 0.5 * frame_width, origin[1] - POWER_GAP];
-    shapes.push(Shape::text(title_at, PANEL_TITLE_SIZE, Anchor::Middle, panel.title(frame_width)));
-    Shape::Group { id: panel.id, shapes }
+    shapes.push(Shape::text(title_at, PANEL_TITLE_SIZE, Anchor::Middle, title));
+    shapes
+}
+
+/// Largest magnitude of the drawable of `values`.
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.filter(|&v| is_drawable(v)).fold(0.0, |most: f64, v| most.max(v.abs()))
+}
+
+impl Panel {
+    /// True for a field with a sign.
+    pub(super) fn is_signed(&self) -> bool {
+        self.map == Map::Diverging
+    }
 }
 
 /// Bands of colour from the lowest, each painted over the one below, and the lines between them.
@@ -273,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_panel_without_room_keeps_its_symbol() {
-        let text = |room: f64| PANELS[1].title(room).into_iter().map(|r| r.text).collect::<String>();
+        let text = |room: f64| TORSION[1].title('b', room).into_iter().map(|r| r.text).collect::<String>();
         assert_eq!(text(300.0), "(b) Shear stress τzx");
         assert_eq!(text(100.0), "(b) τzx");
     }

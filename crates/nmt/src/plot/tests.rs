@@ -51,7 +51,9 @@ impl Section {
 fn scenes(caption: &Caption<'_>, sections: &[Section]) -> [Scene; 3] {
     let parts: Vec<Part<'_>> = sections.iter().map(Section::part).collect();
     let solved: Vec<(Part<'_>, Fields<'_>)> = sections.iter().map(|s| (s.part(), s.fields())).collect();
-    [nodes::scene(caption, &parts), mesh::scene(caption, &parts), solution::scene(caption, &solved)]
+    let fields: Vec<_> = solved.iter().map(|(part, f)| (*part, [f.f, f.tau_zx, f.tau_zy, f.tau])).collect();
+    let solution = solution::scene(caption, &solution::TORSION, &fields, |_| 0.0);
+    [nodes::scene(caption, &parts), mesh::scene(caption, &parts), solution]
 }
 
 fn figures(caption: &Caption<'_>, sections: &[Section]) -> [String; 3] {

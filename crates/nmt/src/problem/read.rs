@@ -32,6 +32,8 @@ pub(super) struct SubdomainDraft {
     pub(super) nodes: Option<[usize; 2]>,
     pub(super) irregularity: f64,
     pub(super) shear_modulus: f64,
+    /// Where it is given, if it is.
+    pub(super) shear_modulus_place: Option<Range<usize>>,
     pub(super) formulation: Option<Formulation>,
     /// True where its formulation is given and could not be read.
     pub(super) formulation_unread: bool,
@@ -195,6 +197,7 @@ fn subdomain(
         nodes,
         irregularity,
         shear_modulus,
+        shear_modulus_place: table.get("shear_modulus").map(|value| value.span()),
         formulation,
         formulation_unread,
         division: division.unwrap_or_default(),

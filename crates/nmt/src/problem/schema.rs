@@ -1,6 +1,7 @@
 //! The problem as the pipeline takes it: read, typed, within its limits.
 
 use super::error::{Place, Source};
+use super::formula::Formula;
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
 use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
@@ -50,6 +51,9 @@ pub struct Subdomain {
     pub contour: Outline,
     /// The holes in the order of the file.
     pub holes: Vec<Hole>,
+    /// ∂u/∂n of a Poisson problem on each edge, n outward, by [`nmt_geom::EdgeId`]: the contour's edges, then each hole's;
+    /// `None` where u is given.
+    pub fluxes: Vec<Option<Formula>>,
     /// Its `[[subdomain]]`.
     pub place: Place,
     /// Its `nodes`, or `--nodes`.
@@ -140,6 +144,19 @@ pub struct SolveSettings {
     pub seed: u64,
     /// Where `star` is given.
     pub star_place: Option<Place>,
+    /// What makes it a Poisson problem; `None` for torsion.
+    pub poisson: Option<PoissonSettings>,
+}
+
+/// The data of a Poisson problem: ∇²u = f, with u = g on edges without a flux.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoissonSettings {
+    /// f.
+    pub source: Formula,
+    /// g; 0 by default.
+    pub boundary: Option<Formula>,
+    /// u where it is known, for the errors.
+    pub exact: Option<Formula>,
 }
 
 impl Default for SolveSettings {
@@ -157,6 +174,7 @@ impl Default for SolveSettings {
             gauss: None,
             seed: nmt_cloud::DEFAULT_SEED,
             star_place: None,
+            poisson: None,
         }
     }
 }
@@ -204,6 +222,12 @@ pub struct Overrides {
     pub test: Option<String>,
     /// `--gauss`.
     pub gauss: Option<i64>,
+    /// `--source`, a formula of x and y.
+    pub source: Option<String>,
+    /// `--boundary`, likewise.
+    pub boundary: Option<String>,
+    /// `--exact`, likewise.
+    pub exact: Option<String>,
     /// `--seed`.
     pub seed: Option<u64>,
     /// `--method`.

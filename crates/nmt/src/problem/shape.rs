@@ -1,5 +1,6 @@
 //! `outline`, `circle`, `ellipse` or `rectangle` to a closed path of curves.
 
+use super::formula::{self, Formula};
 use super::limits::{self, quote};
 use super::suggest;
 use super::tree::{Reader, Table, Value};
@@ -23,6 +24,8 @@ pub(super) struct Shape {
     pub(super) vertices: Vec<Mark>,
     /// Each edge, in order; a straight one that is not written out stands at the vertex before it.
     pub(super) edges: Vec<Mark>,
+    /// ∂u/∂n on each edge of a Poisson problem, where it is given.
+    pub(super) fluxes: Vec<Option<Formula>>,
 }
 
 /// Where a vertex or an edge stands.
@@ -90,6 +93,7 @@ fn read_one(reader: &mut Reader<'_>, table: &Table<'_, '_>, key: &str, prefix: &
         _ => "{ from = [0, 0], to = [2, 1] }",
     };
     let shape = reader.table(&table.item, key, value, example)?;
+    let flux = flux(reader, &shape);
     let mut outline = match key {
         "circle" => circle(reader, &shape),
         "ellipse" => ellipse(reader, &shape),
@@ -100,11 +104,18 @@ fn read_one(reader: &mut Reader<'_>, table: &Table<'_, '_>, key: &str, prefix: &
     }
     let mark = Mark { place: value.span(), number: None, name_place: None };
     let (vertices, edges) = (vec![mark.clone(); outline.vertices.len()], vec![mark; outline.edges.len()]);
-    Some(Shape { outline, item: table.item.clone(), place, vertices, edges })
+    let fluxes = vec![flux; outline.edges.len()];
+    Some(Shape { outline, item: table.item.clone(), place, vertices, edges, fluxes })
+}
+
+/// `neumann` of an edge, or of all edges of a circle, ellipse or rectangle.
+fn flux(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Formula> {
+    let value = table.get("neumann")?;
+    formula::of_the_plane(reader, &table.item, "neumann", value, "\"0\"")
 }
 
 fn circle(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Outline> {
-    reader.known_keys(table, "a circle", &["centre", "radius"]);
+    reader.known_keys(table, "a circle", &["centre", "radius", "neumann"]);
     let centre = required_point(reader, table, "centre");
     let radius = reader.required(table, "radius", "1.0");
     let radius = radius.and_then(|value| reader.number(&table.item, "radius", value, "1.0", limits::positive));
@@ -112,7 +123,7 @@ fn circle(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Outline> {
 }
 
 fn ellipse(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Outline> {
-    reader.known_keys(table, "an ellipse", &["centre", "semi_axes", "angle"]);
+    reader.known_keys(table, "an ellipse", &["centre", "semi_axes", "angle", "neumann"]);
     let centre = required_point(reader, table, "centre");
     let semi_axes = reader.required(table, "semi_axes", "[2.0, 1.0]").and_then(|value| {
         let names = ["semi_axes[0]", "semi_axes[1]"].map(str::to_owned);
@@ -126,7 +137,7 @@ fn ellipse(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Outline> {
 }
 
 fn rectangle(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Outline> {
-    reader.known_keys(table, "a rectangle", &["from", "to"]);
+    reader.known_keys(table, "a rectangle", &["from", "to", "neumann"]);
     let (from, to) = (required_point(reader, table, "from"), required_point(reader, table, "to"));
     let (from, to) = (from?, to?);
     for (d, axis) in ["x", "y"].into_iter().enumerate() {
@@ -159,6 +170,7 @@ struct EdgeItem {
     nodes: Option<usize>,
     name: Option<String>,
     name_place: Option<Range<usize>>,
+    flux: Option<Formula>,
 }
 
 /// How an edge leads from the vertex before it to the vertex after it.
@@ -265,12 +277,13 @@ const EDGE_KINDS: [(&str, &[&str]); 4] =
 
 fn edge(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<EdgeItem> {
     let before = reader.faults.len();
-    reader.known_keys(table, "an edge", &["curve", "arc", "x", "y", "t", "line", "nodes", "name"]);
+    reader.known_keys(table, "an edge", &["curve", "arc", "x", "y", "t", "line", "nodes", "name", "neumann"]);
     let nodes = table.get("nodes");
     let nodes = nodes.and_then(|value| reader.whole(&table.item, "nodes", value, "12", limits::edge_nodes));
     let name = table.get("name");
     let name_place = name.map(|value| value.span());
     let name = name.and_then(|value| reader.text(&table.item, "name", value, "\"crown\"", limits::name));
+    let flux = flux(reader, table);
     let given: Vec<_> = EDGE_KINDS.iter().filter(|(_, keys)| keys.iter().any(|key| table.get(key).is_some())).collect();
     let path = match given[..] {
         [(kind, _)] => match *kind {
@@ -294,7 +307,7 @@ fn edge(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<EdgeItem> {
             None
         }
     };
-    if reader.faults.len() > before { None } else { path.map(|path| EdgeItem { path, nodes, name, name_place }) }
+    if reader.faults.len() > before { None } else { path.map(|path| EdgeItem { path, nodes, name, name_place, flux }) }
 }
 
 fn line(reader: &mut Reader<'_>, table: &Table<'_, '_>, value: &Value<'_>) -> Option<Path> {
@@ -342,20 +355,8 @@ fn formula(
     value: &Value<'_>,
     variable: &str,
 ) -> Option<Expression> {
-    let Some(text) = value.get_ref().as_str() else {
-        let example = if variable == "x" { "\"1 + 0.2*sin(pi*x)\"" } else { "\"cos(t)\"" };
-        return reader.wrong_kind(&table.item, key, "a formula in quotes", value, example);
-    };
-    match Expression::parse(text, &[variable]) {
-        Ok(expression) => Some(expression),
-        Err(error) => {
-            let place = reader.place_in_text(value, error.at());
-            let (message, remedy) = split(&error.to_string());
-            let message = format!("in the formula {}, {message}", quote(text));
-            reader.faults.push(place, table.item.as_str(), message, remedy);
-            None
-        }
-    }
+    let example = if variable == "x" { "\"1 + 0.2*sin(pi*x)\"" } else { "\"cos(t)\"" };
+    formula::read(reader, &table.item, key, value, &[variable], example)
 }
 
 /// The message and the remedy of an error of another crate: they are joined by a semicolon.
@@ -395,15 +396,15 @@ fn closed_path(
     }
     let n = points.len();
     let mut outline = Outline { vertices: Vec::new(), edges: Vec::new() };
-    let mut edges = Vec::new();
+    let (mut edges, mut fluxes) = (Vec::new(), Vec::new());
     for (k, given) in given.into_iter().enumerate() {
         let (from, to) = (points[k], points[(k + 1) % n]);
         let default_name = format!("{prefix}e{}", k + 1);
-        let (mark, curve, nodes, name) = match given {
-            None => (vertices[k].clone(), Curve::Line { from, to }, None, default_name),
-            Some((mark, EdgeItem { path, nodes, name, .. })) => {
+        let (mark, curve, nodes, name, flux) = match given {
+            None => (vertices[k].clone(), Curve::Line { from, to }, None, default_name, None),
+            Some((mark, EdgeItem { path, nodes, name, flux, .. })) => {
                 let curve = curve(path, from, to);
-                (mark, curve, nodes, name.unwrap_or(default_name))
+                (mark, curve, nodes, name.unwrap_or(default_name), flux)
             }
         };
         if n == 1 && !matches!(curve, Curve::Parametric { .. }) {
@@ -420,9 +421,10 @@ fn closed_path(
         }
         outline.edges.push(OutlineEdge { name, curve, nodes });
         edges.push(mark);
+        fluxes.push(flux);
     }
     outline.vertices = points;
-    Some(Shape { outline, item: item.to_owned(), place, vertices, edges })
+    Some(Shape { outline, item: item.to_owned(), place, vertices, edges, fluxes })
 }
 
 fn curve(path: Path, from: Point, to: Point) -> Curve {

@@ -2,6 +2,7 @@
 
 use super::error::{Faults, Place};
 use super::limits::{self, Refusal};
+use super::poisson::PoissonDraft;
 use super::read::{SubdomainDraft, option};
 use super::schema::{Overrides, SolveSettings};
 use super::tree::{Reader, SOLVE_KEYS, Table, Value};
@@ -9,7 +10,7 @@ use nmt_mfdm::{Formulation, Load};
 use toml::de::{DeTable, DeValue};
 
 /// The table's name in messages.
-const ITEM: &str = "[solve]";
+pub(super) const ITEM: &str = "[solve]";
 
 /// `[solve]` as far as it could be read; complete with [`SolveDraft::finish`].
 #[derive(Debug, Default)]
@@ -17,6 +18,7 @@ pub(super) struct SolveDraft {
     settings: SolveSettings,
     file: Given,
     options: Given,
+    poisson: PoissonDraft,
 }
 
 /// What the file gives, or the options do.
@@ -104,6 +106,7 @@ impl SolveDraft {
     fn read_file(&mut self, reader: &mut Reader<'_>, entries: &DeTable<'_>, value: &Value<'_>) {
         let table = Table { entries, place: value.span(), item: ITEM.to_owned() };
         reader.known_keys(&table, ITEM, SOLVE_KEYS);
+        self.poisson.read_file(reader, &table);
         let Self { settings, file, .. } = self;
         let keys = [Key::Order, Key::Star, Key::Stars, Key::Smoothing, Key::Trial, Key::Test, Key::Gauss];
         let given = keys.into_iter().filter_map(|key| Some((key, Place::File(table.get(key.name())?.span()))));
@@ -145,6 +148,7 @@ impl SolveDraft {
 
     /// Puts the options of the command over the settings of the file.
     fn read_options(&mut self, options: &Overrides, faults: &mut Faults) {
+        self.poisson.read_options(options, faults);
         let Self { settings, options: given, .. } = self;
         let place = |name: &str, value: &dyn std::fmt::Display| Place::Option(format!("--{name} {value}"));
         if let Some(word) = &options.formulation {
@@ -205,6 +209,7 @@ impl SolveDraft {
     /// A key of the file belongs to the formulations of the file: `--formulation fem` may stand over a file with an
     /// `order`, which then has no use. An option must have a use.
     pub(super) fn finish(mut self, subdomains: &[SubdomainDraft], faults: &mut Faults) -> SolveSettings {
+        self.settings.poisson = std::mem::take(&mut self.poisson).finish(subdomains, faults);
         let unread = self.options.formulation_unread
             || self.file.formulation_unread
             || subdomains.iter().any(|subdomain| subdomain.formulation_unread);
@@ -270,7 +275,7 @@ fn word<T>(
 }
 
 /// The table of a place in the file; an option names itself.
-fn item(place: &Place) -> &'static str {
+pub(super) fn item(place: &Place) -> &'static str {
     match place {
         Place::File(_) => ITEM,
         Place::Option(_) => "",

@@ -76,6 +76,9 @@ pub(super) const SOLVE_KEYS: &[&str] = &[
     "test",
     "gauss",
     "seed",
+    "source",
+    "boundary",
+    "exact",
 ];
 
 /// Where a key may belong that stands in the wrong table.
@@ -118,6 +121,11 @@ impl Reader<'_> {
                 (Some(meant), _) => format!("did you mean `{meant}`? ({list})"),
                 (None, Some(_)) if word == "hole" => {
                     format!("write [[subdomain.hole]], below its [[subdomain]] ({list})")
+                }
+                (None, _) if word == "neumann" => {
+                    "write it at its edge: in an item of `outline`, { line = true, neumann = \"0\" }, or among the keys of a \
+                     circle, ellipse or rectangle"
+                        .to_owned()
                 }
                 (None, Some(other)) => format!("`{word}` belongs in {other} ({list})"),
                 (None, None) => format!("remove it; {list}"),

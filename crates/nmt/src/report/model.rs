@@ -1,16 +1,17 @@
 //! The report as data; the field names are those of report.json.
 
-use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
+use crate::pipeline::{CloudPart, MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
+use crate::report::points::{self, PointReport, PointValues};
+use crate::report::poisson::PoissonReport;
 use crate::report::singular::singular_vertices;
+use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::warnings;
 use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::Point;
-use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::Stress;
-use nmt_tri::{Mesh, MeshCensus, TriangleIndex, quality};
+use nmt_tri::{MeshCensus, quality};
 use serde::Serialize;
 
 /// Everything a run has to say; [`Report::json`] writes it as report.json.
@@ -22,6 +23,9 @@ pub struct Report {
     pub title: String,
     /// Name of the length unit.
     pub units: String,
+    /// What a solve will solve, in the report of a check.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solves: Option<SolvesReport>,
     /// One entry a subdomain, in the order of the file.
     pub subdomains: Vec<SubdomainReport>,
     /// One entry a common edge, none where the subdomains share nothing; absent with one subdomain.
@@ -70,9 +74,12 @@ pub struct SubdomainReport {
     /// Shape of the triangles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<QualityReport>,
-    /// The solution.
+    /// The solution of torsion.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub solution: Option<SolutionReport>,
+    /// The solution of a Poisson problem.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub poisson: Option<PoissonReport>,
     /// Seconds by stage, filled in by whoever holds the clock.
     pub seconds: Seconds,
 }
@@ -238,24 +245,6 @@ pub struct Seconds {
     pub post: Option<f64>,
 }
 
-/// A point asked for; `null` outside.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PointReport {
-    /// The point.
-    pub at: Point,
-    /// The subdomain that holds it: the first of the file.
-    pub subdomain: Option<String>,
-    /// F.
-    #[serde(rename = "F")]
-    pub f: Option<f64>,
-    /// ∂F/∂y.
-    pub tau_zx: Option<f64>,
-    /// −∂F/∂x.
-    pub tau_zy: Option<f64>,
-    /// Their magnitude.
-    pub tau: Option<f64>,
-}
-
 /// Of all subdomains together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Totals {
@@ -280,6 +269,7 @@ impl Report {
     /// The report of a check: clouds, and what a solution will have to say of their sections.
     pub fn of_check(problem: &Problem, parts: &[CloudPart]) -> Self {
         let mut report = Self::of_clouds(problem, parts);
+        report.solves = Some(SolvesReport::of(problem));
         report.warn_of_sections(problem, parts.iter().map(|part| (&*part.name, &part.section)));
         report
     }
@@ -301,7 +291,8 @@ impl Report {
         let mut report = Self::new(problem, parts.iter().map(solved_report).collect());
         let meshes = parts.iter().map(|solved| &solved.part);
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
-        let points = points_report(parts, points);
+        let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
+        let points = points::report(&fields, points, PointValues::of_torsion);
         for part in parts {
             report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
         }
@@ -312,13 +303,46 @@ impl Report {
         report
     }
 
+    /// The report of a Poisson problem, with the values at `points`.
+    pub fn of_poisson(problem: &Problem, parts: &[PoissonPart], points: &[Point]) -> Self {
+        let mut report = Self::new(problem, parts.iter().map(poisson_report).collect());
+        let meshes = parts.iter().map(|solved| &solved.part);
+        report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
+        let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
+        let points = points::report(&fields, points, PointValues::of_poisson);
+        for part in parts {
+            report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
+        }
+        report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
+        parts.iter().for_each(|part| report.warnings.extend(warnings::of_poisson(part)));
+        report.warnings.extend(points.iter().filter_map(warnings::of_point));
+        report.points = Some(points);
+        report
+    }
+
+    /// The report of whatever was solved, with the values at `points`.
+    pub fn of_solved(problem: &Problem, solved: &Solved, points: &[Point]) -> Self {
+        match solved {
+            Solved::Torsion(parts) => Self::of_solutions(problem, parts, points),
+            Solved::Poisson(parts) => Self::of_poisson(problem, parts, points),
+        }
+    }
+
     fn warn_of_sections<'a>(&mut self, problem: &Problem, sections: impl Iterator<Item = (&'a str, &'a Section)>) {
+        let common = self.common_edges.as_deref().unwrap_or_default();
+        let names = self.subdomains.iter().map(|subdomain| &*subdomain.name);
+        if let Some(poisson) = &problem.solve.poisson {
+            // With the exact solution at hand nothing need be guessed.
+            if poisson.exact.is_none() {
+                self.warnings.extend(sections.filter_map(|(name, section)| warnings::of_corners(name, section)));
+            }
+            self.warnings.extend(warnings::of_common_edges(names, common, warnings::POISSON_ALONE));
+            return;
+        }
         for (name, section) in sections {
             self.warnings.extend(warnings::of_section(name, section, problem.solve.holes));
         }
-        let common = self.common_edges.as_deref().unwrap_or_default();
-        let names = self.subdomains.iter().map(|subdomain| &*subdomain.name);
-        self.warnings.extend(warnings::of_common_edges(names, common));
+        self.warnings.extend(warnings::of_common_edges(names, common, warnings::TORSION_ALONE));
         self.warnings.extend(warnings::of_torque(self.subdomains.len(), problem.solve.load));
     }
 
@@ -328,6 +352,7 @@ impl Report {
             nmt: env!("CARGO_PKG_VERSION").into(),
             title: problem.title.clone(),
             units: problem.units.clone(),
+            solves: None,
             subdomains,
             common_edges: None,
             points: None,
@@ -374,6 +399,7 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         smoothing: None,
         quality: None,
         solution: None,
+        poisson: None,
         seconds: Seconds::default(),
     }
 }
@@ -431,37 +457,11 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
     }
 }
 
-/// F and τ at points: inside is what the real boundary encloses, itself included, to 1e-9 of the size.
-fn points_report(parts: &[SolvedPart], points: &[Point]) -> Vec<PointReport> {
-    if points.is_empty() {
-        return Vec::new();
+fn poisson_report(solved: &PoissonPart) -> SubdomainReport {
+    let zero = Some(0.0);
+    SubdomainReport {
+        poisson: Some(PoissonReport::of(solved)),
+        seconds: Seconds { cloud: 0.0, mesh: zero, stencils: zero, assemble: zero, solve: zero, post: zero },
+        ..mesh_report(&solved.part)
     }
-    let of_part = |part: &SolvedPart| SAME_POINT_REL * mesh_of(part).cloud().size();
-    let tolerance: Vec<f64> = parts.iter().map(of_part).collect();
-    let indices: Vec<TriangleIndex> = parts.iter().map(|part| TriangleIndex::new(mesh_of(part))).collect();
-    let report = |&at: &Point| {
-        let found = parts.iter().enumerate().find_map(|(k, part)| {
-            let field = part.solution.at(mesh_of(part), &indices[k], at, tolerance[k])?;
-            Some((part.part.name.clone(), field))
-        });
-        match found {
-            Some((name, field)) => {
-                let stress = Stress::of_gradient(field.gradient);
-                PointReport {
-                    at,
-                    subdomain: Some(name),
-                    f: Some(field.value),
-                    tau_zx: Some(stress.zx),
-                    tau_zy: Some(stress.zy),
-                    tau: Some(stress.magnitude()),
-                }
-            }
-            None => PointReport { at, subdomain: None, f: None, tau_zx: None, tau_zy: None, tau: None },
-        }
-    };
-    points.iter().map(report).collect()
-}
-
-fn mesh_of(part: &SolvedPart) -> &Mesh {
-    &part.part.mesh
 }

@@ -1,8 +1,11 @@
 //! The report as text: the paper's report of generated and deleted nodes, mesh, solver, results.
 
 use crate::report::common::CommonEdgeReport;
-use crate::report::model::{PointReport, Report, SmoothingReport, SolutionReport, SubdomainReport};
-use crate::report::stars::StarsReport;
+use crate::report::model::{Report, SmoothingReport, SolutionReport, SubdomainReport};
+use crate::report::points::{PointReport, PointValues};
+use crate::report::poisson::{ErrorReport, PoissonReport};
+use crate::report::solves::SolvesReport;
+use crate::report::stars::{StarsReport, VariationalReport};
 use std::fmt::Write as _;
 
 /// Width of the left column.
@@ -13,6 +16,9 @@ pub fn text(report: &Report) -> String {
     let mut out = Text { out: String::new(), length: unit(&report.units) };
     if !report.title.is_empty() {
         out.heading(&report.title);
+    }
+    if let Some(solves) = &report.solves {
+        out.solves(solves);
     }
     for subdomain in &report.subdomains {
         out.subdomain(subdomain);
@@ -118,16 +124,15 @@ impl<U: Fn(i32) -> String> Text<U> {
         if let Some(solution) = &s.solution {
             self.solution(solution);
         }
+        if let Some(poisson) = &s.poisson {
+            self.poisson(poisson);
+        }
         self.out.push('\n');
     }
 
     fn solution(&mut self, s: &SolutionReport) {
         let (u2, u3, u4) = ((self.length)(2), (self.length)(3), (self.length)(4));
-        let functions = s.variational.map_or(String::new(), |v| {
-            format!(", trial {}, test {}, {}", v.trial, v.test, counted(v.gauss, "Gauss point", "Gauss points"))
-        });
-        let formulation = format!("{}, order {}{functions}, {} unknowns", s.formulation, s.order, s.unknowns);
-        self.row("formulation", formulation);
+        self.formulation(s.formulation, s.order, s.variational, s.unknowns);
         if let Some(stars) = &s.stars {
             self.stars(stars);
         }
@@ -144,6 +149,58 @@ impl<U: Fn(i32) -> String> Text<U> {
         let grows =
             if s.tau_singular_at.is_empty() { "" } else { " (largest at nodes; infinite at re-entrant vertices)" };
         self.row("τ_max", format!("{} at {}{grows}", number(s.tau_max), place(s.tau_max_at)));
+    }
+
+    fn formulation(&mut self, name: &str, order: usize, variational: Option<VariationalReport>, unknowns: usize) {
+        let functions = variational.map_or(String::new(), |v| {
+            format!(", trial {}, test {}, {}", v.trial, v.test, counted(v.gauss, "Gauss point", "Gauss points"))
+        });
+        self.row("formulation", format!("{name}, order {order}{functions}, {unknowns} unknowns"));
+    }
+
+    fn poisson(&mut self, s: &PoissonReport) {
+        self.row("Poisson problem", format!("∇²u = {}; u = {} on edges without a flux", s.source, s.boundary));
+        self.formulation(s.formulation, s.order, s.variational, s.unknowns);
+        if let Some(stars) = &s.stars {
+            self.stars(stars);
+        }
+        self.row("linear residual", format!("{:.1e}", s.linear_residual));
+        for flux in &s.fluxes {
+            let integral = flux.integral.map_or(String::new(), |sum| format!(", ∫ ds = {}", number(sum)));
+            self.row(&format!("flux on \"{}\"", flux.edge), format!("∂u/∂n = {}{integral}", flux.neumann));
+        }
+        self.row("u_min", format!("{} at {}", number(s.u_min), place(s.u_min_at)));
+        self.row("u_max", format!("{} at {}", number(s.u_max), place(s.u_max_at)));
+        if let (Some(exact), Some(errors)) = (&s.exact, &s.errors) {
+            self.row("exact u", exact);
+            self.errors(errors);
+        }
+    }
+
+    fn errors(&mut self, e: &ErrorReport) {
+        let relative = |error: Option<f64>| error.map_or(String::new(), |error| format!(", relative {error:.2e}"));
+        self.row("error at nodes", format!("{:.2e}{}", e.max, relative(e.max_relative)));
+        self.row("error in L²", format!("{:.2e}{}", e.l2, relative(e.l2_relative)));
+        if let (Some(max), Some(h1)) = (e.gradient_max, e.h1) {
+            let h1 = format!("{h1:.2e}{}", relative(e.h1_relative));
+            self.row("error of ∇u", format!("{max:.2e} at nodes; in L² {h1}"));
+        }
+    }
+
+    fn solves(&mut self, solves: &SolvesReport) {
+        let line = match solves {
+            SolvesReport::Torsion { twist, torque, holes } => {
+                let load = twist.map(|twist| format!("twist θ = {}", number(twist)));
+                let load = load.or(torque.map(|torque| format!("torque T = {}", number(torque)))).unwrap_or_default();
+                format!("Torsion, ∇²F = −2Gθ, {load}, holes by {holes}")
+            }
+            SolvesReport::Poisson { source, boundary, fluxes, exact } => {
+                let exact = exact.as_ref().map_or(String::new(), |u| format!("; exact u = {u}"));
+                let fluxes = counted(*fluxes, "edge with a flux", "edges with a flux");
+                format!("Poisson problem, ∇²u = {source}, {fluxes}, u = {boundary} on the others{exact}")
+            }
+        };
+        let _ = writeln!(self.out, "{line}");
     }
 
     /// The paper's topological matrix.
@@ -182,11 +239,19 @@ impl<U: Fn(i32) -> String> Text<U> {
         let _ = writeln!(self.out, "Points");
         for point in points {
             let label = place(point.at);
-            match (point.f, point.tau_zx, point.tau_zy, point.tau, &point.subdomain) {
-                (Some(f), Some(zx), Some(zy), Some(tau), Some(name)) => {
+            let values = match point.values {
+                PointValues::Torsion { f: Some(f), tau_zx: Some(zx), tau_zy: Some(zy), tau: Some(tau) } => {
                     let [f, zx, zy, tau] = [f, zx, zy, tau].map(number);
-                    self.row(&label, format!("F = {f}, τ_zx = {zx}, τ_zy = {zy}, τ = {tau}   in \"{name}\""));
+                    Some(format!("F = {f}, τ_zx = {zx}, τ_zy = {zy}, τ = {tau}"))
                 }
+                PointValues::Poisson { u: Some(u), u_x: Some(x), u_y: Some(y) } => {
+                    let [u, x, y] = [u, x, y].map(number);
+                    Some(format!("u = {u}, ∂u/∂x = {x}, ∂u/∂y = {y}"))
+                }
+                _ => None,
+            };
+            match (values, &point.subdomain) {
+                (Some(values), Some(name)) => self.row(&label, format!("{values}   in \"{name}\"")),
                 _ => self.row(&label, "outside"),
             }
         }

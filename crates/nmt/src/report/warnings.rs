@@ -1,14 +1,14 @@
 //! What the user should know before trusting a number.
 
-use crate::pipeline::{MeshPart, SolvedPart};
+use crate::pipeline::{MeshPart, PoissonPart, SolvedPart};
 use crate::report::common::CommonEdgeReport;
-use crate::report::model::PointReport;
+use crate::report::points::PointReport;
 use crate::report::singular::singular_vertices;
 use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::{Formulation, HoleCondition, Load, StarChoice, Test, Trial};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, StarReport, Test, Trial};
 
 /// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
 /// nodes beside the boundary.
@@ -71,19 +71,70 @@ pub(super) fn of_section(name: &str, section: &Section, holes: HoleCondition) ->
     warnings
 }
 
-/// Warnings of a solution, beyond those of its section.
+/// A warning of the section of a Poisson problem: what its corners do to u.
+pub(super) fn of_corners(name: &str, section: &Section) -> Option<String> {
+    let singular = singular_vertices(section);
+    let first = *singular.first()?;
+    Some(format!(
+        "subdomain \"{name}\": the gradient of u is infinite, but for special data, at {}, such as {}: u converges slowly \
+         there whatever the order; give the corner a fillet",
+        counted(singular.len(), "re-entrant vertex", "re-entrant vertices"),
+        place(first)
+    ))
+}
+
+/// Warnings of a solution of torsion, beyond those of its section.
 pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
-    let (name, solution) = (&solved.part.name, &solved.solution);
+    let SolvedPart { part, params, solution } = solved;
+    of_equations(&part.name, params, [&solution.stars, &solution.recovery_stars], ["J stays", "stresses"])
+}
+
+/// Warnings of a solution of a Poisson problem, beyond those of its section.
+pub(super) fn of_poisson(solved: &PoissonPart) -> Vec<String> {
+    let PoissonPart { part, params, solution, data, .. } = solved;
+    let recovery = solution.field.report();
+    let mut warnings = of_equations(&part.name, params, [&solution.stars, &recovery], ["u stays", "gradients"]);
+    warnings.extend(of_boundary(solved, data.settings.boundary.is_none()));
+    warnings
+}
+
+/// Boundary values that are not those of the exact solution: the errors then say nothing of the method.
+fn of_boundary(solved: &PoissonPart, is_default: bool) -> Option<String> {
+    let (mesh, errors) = (&solved.part.mesh, solved.errors.as_ref()?);
+    let boundary = mesh.cloud().boundary();
+    let flux = |segment: &nmt_geom::Segment| solved.data.fluxes.get(segment.edge.index()).is_some_and(Option::is_some);
+    let with_value = boundary.segments().iter().filter(|segment| !flux(segment));
+    let off = |node: usize| (solved.solution.u[node] - errors.exact[node]).abs();
+    let node = with_value.map(|s| s.from.index()).max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+    // With smoothing the values are not met to rounding.
+    let is_met = off(node) <= SAME_POINT_REL * errors.value.scale || solved.params.smoothing > 0.0;
+    let remedy = if is_default { "give `boundary` = `exact`: it is 0 by default" } else { "correct one of the two" };
+    (!is_met).then(|| {
+        format!(
+            "subdomain \"{}\": u on the boundary differs from `exact` by {:.1e}, for example at {}; {remedy}",
+            solved.part.name,
+            off(node),
+            place(mesh.xy()[node])
+        )
+    })
+}
+
+/// Warnings of the equations: `results` is how a result is off that stays off, and what is recovered.
+fn of_equations(
+    name: &str,
+    params: &SolveParams,
+    [stars, recovery_stars]: [&StarReport; 2],
+    [stays, recovered]: [&str; 2],
+) -> Vec<String> {
     let mut warnings = Vec::new();
     let lowered = |n: usize| counted(n, "node", "nodes");
-    let params = &solved.params;
     if (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Mwls, Test::Trial) {
         warnings.push(format!(
             "subdomain \"{name}\": trial = \"mwls\" with test = \"trial\", the paper's form, does not converge on irregular \
-             clouds: J stays 5 to 20 % off however many nodes there are; choose test = \"hat\", or trial = \"blended\""
+             clouds: {stays} 5 to 20 % off however many nodes there are; choose test = \"hat\", or trial = \"blended\""
         ));
     }
-    if solution.stars.wrong_sign > 0 {
+    if stars.wrong_sign > 0 {
         let remedy = match params.stars {
             StarChoice::Nearest => "choose stars = \"balanced\", or more nodes there",
             StarChoice::Balanced => "choose larger stars, or more nodes there",
@@ -91,35 +142,42 @@ pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
         warnings.push(format!(
             "subdomain \"{name}\": the ∇² rows of {} have a coefficient of the wrong sign at the node itself (star_diagonal \
              in mesh.vtu shows where); {remedy}",
-            lowered(solution.stars.wrong_sign)
+            lowered(stars.wrong_sign)
         ));
     }
-    if solution.stars.order_lowered > 0 {
+    if stars.order_lowered > 0 {
         warnings.push(format!(
             "subdomain \"{name}\": the stars of {} carry only a polynomial of lower order; \
              choose more nodes across thin parts",
-            lowered(solution.stars.order_lowered)
+            lowered(stars.order_lowered)
         ));
     }
-    if solution.recovery_stars.order_lowered > 0 {
+    if recovery_stars.order_lowered > 0 {
         warnings.push(format!(
-            "subdomain \"{name}\": stresses at {} are recovered with a lower order; choose more nodes across thin parts",
-            lowered(solution.recovery_stars.order_lowered)
+            "subdomain \"{name}\": {recovered} at {} are recovered with a lower order; choose more nodes across thin parts",
+            lowered(recovery_stars.order_lowered)
         ));
     }
     warnings
 }
 
-/// Subdomains that share edges, the paper solves each alone; of those that are apart, that is the solution.
-pub(super) fn of_common_edges<'a>(names: impl Iterator<Item = &'a str>, common: &[CommonEdgeReport]) -> Option<String> {
+/// What it means that subdomains with common edges are solved each alone: in torsion, the paper's way.
+pub(super) const TORSION_ALONE: &str =
+    "with F = 0 on its whole outline, common edges included: their J do not add up to that of one bar";
+/// The same in a Poisson problem.
+pub(super) const POISSON_ALONE: &str =
+    "with its own values and fluxes on common edges too: nothing makes u and its flux continue from one to the other";
+
+/// Subdomains that share edges are solved each alone; of those that are apart, that is the solution.
+pub(super) fn of_common_edges<'a>(
+    names: impl Iterator<Item = &'a str>,
+    common: &[CommonEdgeReport],
+    alone: &str,
+) -> Option<String> {
     let is_shared = |name: &&str| common.iter().any(|edge| edge.between.iter().any(|side| side == name));
     let names: Vec<String> = names.filter(is_shared).map(|name| format!("\"{name}\"")).collect();
     let (last, others) = names.split_last()?;
-    Some(format!(
-        "subdomains {} and {last} have common edges, and are solved each alone, with F = 0 on its whole outline, common \
-         edges included: their J do not add up to that of one bar",
-        others.join(", ")
-    ))
+    Some(format!("subdomains {} and {last} have common edges, and are solved each alone, {alone}", others.join(", ")))
 }
 
 /// A torque for several subdomains.
