@@ -34,6 +34,7 @@ mod flux;
 mod galerkin;
 mod gauss;
 mod local;
+mod mend;
 mod mwls;
 mod parallel;
 mod params;
