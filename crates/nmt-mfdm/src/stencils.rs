@@ -126,7 +126,7 @@ impl Stencils {
             let StarParams { order, size, smoothing, .. } = params;
             for node in piece {
                 let negative_diagonal = node >= surroundings.n_boundary();
-                let demand = Demand { order, size, smoothing, negative_diagonal };
+                let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
                 let outcome = sound_star(&mut finder, &mut mwls, NodeId::of(node), demand, &mut star);
                 part.push(&star, &mut mwls, outcome);
             }
@@ -174,7 +174,7 @@ impl Stencils {
             let k = node.index() - self.first;
             let size = (3 * self.sizes[k] as usize).div_ceil(2);
             let negative_diagonal = node.index() >= surroundings.n_boundary();
-            let demand = Demand { order, size, smoothing, negative_diagonal };
+            let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
             let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
             self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
             // What was appended takes the place of the node's own.
