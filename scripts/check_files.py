@@ -75,9 +75,36 @@ for problem in sorted(problems.glob("*.toml")):
         torque = 2 * (f * areas[own]).sum() + 2 * holes
         expect(abs(torque / subdomain["torque"] - 1) < (0.1 if subdomain["nodes"] > 200 else 0.15), f"{problem}: torque {torque} against {subdomain['torque']}")
 
+    # edges.csv has the nodes' own stresses, turned into the directions of its edges.
+    node_rows = {(row["subdomain"], row["node"]): row for row in rows}
+    along = rows_of(where / "edges.csv")
+    for row in along:
+        own = node_rows[row["subdomain"], row["node"]]
+        expect(all(row[key] == own[key] for key in ("x", "y", "tau_zx", "tau_zy", "tau")), f"{problem}: edges.csv and nodes.csv differ: {row}")
+        expect(row["edge"] in own["edges"].split(";"), f"{problem}: node {row['node']} of edges.csv is not on {row['edge']}")
+        turned = np.hypot(float(row["tau_t"]), float(row["tau_n"]))
+        expect(abs(turned - float(row["tau"])) <= 1e-12 * max(float(row["tau"]), 1e-300), f"{problem}: tau_t and tau_n of {row}")
+    expect({(row["subdomain"], row["node"]) for row in along} == {key for key, row in node_rows.items() if row["kind"] != "interior"},
+           f"{problem}: edges.csv has not all boundary nodes")
+    for subdomain in report["subdomains"]:
+        own = [row for row in along if row["subdomain"] == subdomain["name"]]
+        for edge in subdomain["edges"]:
+            on_it = [row for row in own if row["edge"] == edge["name"] and row["loop"] == edge["loop"]]
+            s = np.array([float(row["s"]) for row in on_it])
+            expect(s[0] == 0 and np.all(np.diff(s) > 0) and abs(s[-1] / edge["length"] - 1) < 1e-12, f"{problem}: s along {edge['name']}")
+            expect(max(float(row["tau"]) for row in on_it) == edge["tau_max"], f"{problem}: tau_max of {edge['name']}")
+        # By the trapezoidal rule on the same values: h² off, where the report takes cubics.
+        for ring in subdomain["loops"]:
+            names = [edge["name"] for edge in subdomain["edges"] if edge["loop"] == ring["name"]]
+            total = 0.0
+            for name in names:
+                on_it = [row for row in own if row["edge"] == name and row["loop"] == ring["name"]]
+                total += np.trapezoid([float(row["tau_t"]) for row in on_it], [float(row["s"]) for row in on_it])
+            expect(abs(abs(total) / abs(ring["circulation"]) - 1) < 0.1, f"{problem}: circulation of {ring['name']}: {total}")
+
     check_msh.check(where / "mesh.msh", [part["name"] for part in report["subdomains"]], rows, mesh, expect)
 
-    for picture in ("nodes", "mesh", "solution"):
+    for picture in ("nodes", "mesh", "solution", "edges"):
         root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
         expect(root.tag.endswith("svg"), f"{problem}: {picture}.svg is no SVG")
         head = (where / f"{picture}.png").read_bytes()[:24]
