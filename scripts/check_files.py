@@ -10,6 +10,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree
 
+import check_fem
 import check_msh
 import gmsh
 import meshio
@@ -31,6 +32,36 @@ def expect(condition, message):
 def rows_of(file):
     with open(file, newline="") as opened:
         return list(csv.DictReader(opened))
+
+
+def check_edges(where, rows, report, problem):
+    """τ along the edges of torsion."""
+    # edges.csv has the nodes' own stresses, turned into the directions of its edges.
+    node_rows = {(row["subdomain"], row["node"]): row for row in rows}
+    along = rows_of(where / "edges.csv")
+    for row in along:
+        own = node_rows[row["subdomain"], row["node"]]
+        expect(all(row[key] == own[key] for key in ("x", "y", "tau_zx", "tau_zy", "tau")), f"{problem}: edges.csv and nodes.csv differ: {row}")
+        expect(row["edge"] in own["edges"].split(";"), f"{problem}: node {row['node']} of edges.csv is not on {row['edge']}")
+        turned = np.hypot(float(row["tau_t"]), float(row["tau_n"]))
+        expect(abs(turned - float(row["tau"])) <= 1e-12 * max(float(row["tau"]), 1e-300), f"{problem}: tau_t and tau_n of {row}")
+    expect({(row["subdomain"], row["node"]) for row in along} == {key for key, row in node_rows.items() if row["kind"] != "interior"},
+           f"{problem}: edges.csv has not all boundary nodes")
+    for subdomain in report["subdomains"]:
+        own = [row for row in along if row["subdomain"] == subdomain["name"]]
+        for edge in subdomain["edges"]:
+            on_it = [row for row in own if row["edge"] == edge["name"] and row["loop"] == edge["loop"]]
+            s = np.array([float(row["s"]) for row in on_it])
+            expect(s[0] == 0 and np.all(np.diff(s) > 0) and abs(s[-1] / edge["length"] - 1) < 1e-12, f"{problem}: s along {edge['name']}")
+            expect(max(float(row["tau"]) for row in on_it) == edge["tau_max"], f"{problem}: tau_max of {edge['name']}")
+        # By the trapezoidal rule on the same values: h² off, where the report takes cubics.
+        for ring in subdomain["loops"]:
+            names = [edge["name"] for edge in subdomain["edges"] if edge["loop"] == ring["name"]]
+            total = 0.0
+            for name in names:
+                on_it = [row for row in own if row["edge"] == name and row["loop"] == ring["name"]]
+                total += np.trapezoid([float(row["tau_t"]) for row in on_it], [float(row["s"]) for row in on_it])
+            expect(abs(abs(total) / abs(ring["circulation"]) - 1) < 0.1, f"{problem}: circulation of {ring['name']}: {total}")
 
 
 for problem in sorted(problems.glob("*.toml")):
@@ -85,14 +116,24 @@ for problem in sorted(problems.glob("*.toml")):
         torque = 2 * (f * areas[own]).sum() + 2 * holes
         expect(abs(torque / subdomain["torque"] - 1) < (0.1 if subdomain["nodes"] > 200 else 0.15), f"{problem}: torque {torque} against {subdomain['torque']}")
 
+    if not is_poisson:
+        check_edges(where, rows, report, problem)
     check_msh.check(where / "mesh.msh", [part["name"] for part in report["subdomains"]], rows, mesh, expect)
 
-    for picture in ("nodes", "mesh", "solution"):
+    for picture in ("nodes", "mesh", "solution") if is_poisson else ("nodes", "mesh", "solution", "edges"):
         root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
         expect(root.tag.endswith("svg"), f"{problem}: {picture}.svg is no SVG")
         head = (where / f"{picture}.png").read_bytes()[:24]
         width, height = struct.unpack(">II", head[16:24])
         expect(head[:8] == b"\x89PNG\r\n\x1a\n" and min(width, height) > 200, f"{problem}: {picture}.png")
+
+    if is_poisson:
+        continue
+    # Coarse enough for dense matrices, irregular where the problem is.
+    where = out / f"{problem.stem}-fem"
+    subprocess.run([nmt, "solve", problem, "--formulation", "fem", "--nodes", "31,31", "--out", where, "--json"], check=True, capture_output=True)
+    report = json.loads((where / "report.json").read_text())
+    check_fem.check(report, rows_of(where / "nodes.csv"), meshio.read(where / "mesh.vtu"), problem, expect)
 
 # Several subdomains, with and without nodes in common, of a mesh and of a solution.
 for name, text, is_welded in (("welded", check_msh.WELDED, True), ("separate", check_msh.SEPARATE, False)):

@@ -3,13 +3,16 @@
 use crate::golden::read_problem;
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::{solution_svg, stages_svg};
+use nmt::figures::{edges_svg, solution_svg, stages_svg};
 use nmt::pipeline::clouds;
 use nmt::prelude::*;
 use std::fs;
 
 /// The problems whose four panels the documentation shows.
 const SHOWN: [&str; 1] = ["paper-3"];
+
+/// The problem whose edges the documentation shows.
+const EDGES: &str = "i-section";
 
 /// The problem whose mesh the documentation shows in its four stages.
 const STAGES: &str = "bare-segment";
@@ -20,6 +23,8 @@ pub fn draw() -> Result<()> {
         let problem = shipped(name)?;
         write(name, &solution_svg(&problem, &solve_problem(&problem)?))?;
     }
+    let problem = shipped(EDGES)?;
+    write("edges", &edges_svg(&problem, &solve_problem(&problem)?))?;
     let problem = shipped(STAGES)?;
     for part in clouds(&problem, &mut |_, _| {})? {
         let stages = nmt_tri::stages(&part.cloud, &nmt_tri::Elimination::default())?;

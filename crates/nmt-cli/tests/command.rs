@@ -79,12 +79,15 @@ fn every_file_is_the_same_to_the_bit_for_one_and_two_threads_and_in_two_runs() {
         "mesh.vtu",
         "mesh.msh",
         "stars.json",
+        "edges.csv",
         "nodes.svg",
         "mesh.svg",
         "solution.svg",
+        "edges.svg",
         "nodes.png",
         "mesh.png",
         "solution.png",
+        "edges.png",
     ];
     let read = |run: &PathBuf, name: &str| std::fs::read(run.join(name)).expect("a result");
     for run in &runs[1..] {

@@ -9,16 +9,35 @@ use crate::system::{Equation, NodeCondition, Roles, RowSum};
 use nmt_geom::NodeId;
 use nmt_tri::{Mesh, NodeTris};
 
-/// A boundary value problem on a mesh, ready to be made equations.
-pub(crate) struct Setting<'a> {
+/// A boundary value problem on a mesh.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame<'a> {
     pub mesh: &'a Mesh,
-    pub stencils: &'a Stencils,
     pub node_tris: &'a NodeTris,
     pub roles: &'a Roles,
     pub source: Source<'a>,
     pub fluxes: &'a Fluxes,
     /// Integrates the source, where it is not constant.
-    pub source_rule: Rule,
+    pub source_rule: &'a Rule,
+}
+
+/// A problem with its stencils, ready to be made equations.
+#[derive(Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    pub mesh: &'a Mesh,
+    pub node_tris: &'a NodeTris,
+    pub roles: &'a Roles,
+    pub source: Source<'a>,
+    pub fluxes: &'a Fluxes,
+    pub source_rule: &'a Rule,
+    pub stencils: &'a Stencils,
+}
+
+impl<'a> Frame<'a> {
+    pub fn with(self, stencils: &'a Stencils) -> Setting<'a> {
+        let Self { mesh, node_tris, roles, source, fluxes, source_rule } = self;
+        Setting { mesh, node_tris, roles, source, fluxes, source_rule, stencils }
+    }
 }
 
 /// Σφ_j(x_b)·u_j = value at a node whose value is given, where polynomials smooth (g > 0); `None` at all others.

@@ -1,14 +1,15 @@
 //! A boundary value problem −∇²u = s on a mesh: stencils → system → nodal values → recovered field.
 
-use crate::assembly::Setting;
+use crate::assembly::Frame;
 use crate::blend::NodalPolynomials;
 use crate::circulation::hole_equations;
 use crate::diagnostics::{StarDiagnostics, diagnose};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
+use crate::mend::mend;
 use crate::params::SolveParams;
-use crate::problem::{Formulation, Test};
+use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
 use crate::solve::Stage;
 use crate::solver::direct;
@@ -66,7 +67,7 @@ pub(crate) fn solve_discrete(
     let dirichlet = if interpolates { Dirichlet::Eliminated } else { Dirichlet::Rows };
     let roles = Roles::new(conditions, mesh.cloud().n_interior(), dirichlet);
 
-    let stencils = if params.formulation == Formulation::Fem {
+    let mut stencils = if params.formulation == Formulation::Fem {
         Stencils::constants(n_nodes)
     } else {
         let stars = params.star_params(n_nodes, &metric)?;
@@ -81,15 +82,24 @@ pub(crate) fn solve_discrete(
         }
         stencils
     };
-    let stars = stencils.report();
-    let diagnostics = diagnose(&surroundings, &stencils);
     ended(Stage::Stencils);
 
     let rule = params.rule()?;
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
     let source_rule = Rule::of(SOURCE_POINTS[usize::from(params.order > 2)]).unwrap_or_else(crate::gauss::six_points);
-    let setting =
-        Setting { mesh, stencils: &stencils, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule };
+    let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+    let hats_on_blends =
+        (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Blended, Test::Hat);
+    let mended = if hats_on_blends && interpolates {
+        let weak = WeakForm::blended(mesh, &stencils, fluxes, &rule);
+        let mut equations = variational::equations(&frame.with(&stencils), &weak)?;
+        mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut equations)?;
+        Some(equations)
+    } else {
+        None
+    };
+    let (stars, diagnostics) = (stencils.report(), diagnose(&surroundings, &stencils));
+    let setting = frame.with(&stencils);
     let space = TrialSpace {
         kind: params.trial,
         mesh,
@@ -102,10 +112,13 @@ pub(crate) fn solve_discrete(
         Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
         Formulation::Local | Formulation::Fem => WeakForm::blended(mesh, &stencils, fluxes, &rule),
     };
-    let system = match (params.formulation, params.test) {
-        (Formulation::Local, _) => local::assemble(&setting)?,
-        (Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
-        (Formulation::Variational, Test::Hat) | (Formulation::Fem, _) => variational::assemble(&setting, &weak)?,
+    let system = match (mended, params.formulation, params.test) {
+        (Some(equations), _, _) => LinearSystem::of(roles.n_holes, equations.into_iter()),
+        (None, Formulation::Local, _) => local::assemble(&setting)?,
+        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
+        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
+            LinearSystem::of(roles.n_holes, variational::equations(&setting, &weak)?.into_iter())
+        }
     };
     let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
     drop(weak);

@@ -62,6 +62,9 @@ pub enum MfdmError {
         /// What is wrong with it.
         source: nmt_curve::CurveError,
     },
+    /// A cloud was put together without its edges' arc lengths.
+    #[error("the cloud does not know where its nodes lie along their edges; generate it from the section")]
+    EdgesUnknown,
     /// A section and a mesh do not belong together.
     #[error("the cloud has {found} edges on its boundary and the problem {given}; give each edge its condition")]
     Conditions {

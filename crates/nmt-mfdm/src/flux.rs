@@ -13,7 +13,7 @@ use std::collections::hash_map::Entry;
 pub(crate) type Flux<'a> = &'a (dyn Fn(Point) -> f64 + Sync);
 
 /// Points and weights of Gauss–Legendre rules on [0, 1]: four along an edge, exact to degree 7; two across a sliver.
-const ALONG: [[f64; 2]; 4] = [
+pub(crate) const ALONG: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
     [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
@@ -144,18 +144,18 @@ fn boundary_triangles(mesh: &Mesh) -> HashMap<(NodeId, NodeId), TriId> {
 }
 
 /// The piece of an edge that a segment stands for, from the segment's first node to its last.
-struct Piece<'a> {
+pub(crate) struct Piece<'a> {
     from: Point,
     to: Point,
     table: &'a ArcTable,
     curve: &'a Curve,
-    is_straight: bool,
-    s: [f64; 2], // arc lengths of its ends along the edge
-    length: f64,
+    pub is_straight: bool,
+    pub s: [f64; 2], // arc lengths of its ends along the edge
+    pub length: f64,
 }
 
 impl<'a> Piece<'a> {
-    fn new(cloud: &Cloud, segment: &Segment, curve: &'a Curve, table: &'a ArcTable) -> Self {
+    pub fn new(cloud: &Cloud, segment: &Segment, curve: &'a Curve, table: &'a ArcTable) -> Self {
         let [from, to] = cloud.boundary().ends(segment);
         let fraction = |node: NodeId| cloud.edge_fractions().map(|all| all[node.index()]);
         let is_vertex = |node: NodeId| node.index() < cloud.n_vertices();
@@ -181,7 +181,7 @@ impl<'a> Piece<'a> {
     }
 
     /// The place at fraction `s` of its length.
-    fn point(&self, s: f64) -> Point {
+    pub fn point(&self, s: f64) -> Point {
         if self.is_straight { lerp(self.from, self.to, s) } else { self.table.point_at(self.at(s)) }
     }
 
@@ -190,7 +190,7 @@ impl<'a> Piece<'a> {
     }
 
     /// Unit vector along it at fraction `s` of its length.
-    fn direction(&self, s: f64) -> Point {
+    pub fn direction(&self, s: f64) -> Point {
         let chord = sub(self.to, self.from);
         let tangent =
             if self.is_straight { chord } else { self.curve.direction_at(self.table.parameter_at(self.at(s))) };

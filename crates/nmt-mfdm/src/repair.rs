@@ -13,6 +13,11 @@ use nmt_geom::NodeId;
 /// 1e-5 with 10 nodes in it. Stars of order 3 lie between 100 and 350.
 const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
 
+/// g of the weights that are tried where a star keeps a wrong sign: a neighbour much nearer than all others has nearly all
+/// the weight, the polynomial falls from 1 to 0 on the way to it, and what the others leave of the second derivative along
+/// that way may be of either sign. Rows reproduce polynomials whatever the weights.
+const FLATTER: [f64; 3] = [0.25, 0.5, 1.0];
+
 /// A star is enlarged to these parts of its size, in eighths, before the order is lowered.
 const ENLARGEMENTS: [usize; 6] = [8, 9, 10, 12, 16, 24];
 
@@ -45,6 +50,8 @@ pub(crate) struct Demand {
     pub size: usize,
     /// g of the weight.
     pub smoothing: f64,
+    /// g of the weights of the polynomial, at least `smoothing`; it meets the centre's value where `smoothing` is 0.
+    pub flattening: f64,
     /// The node's own coefficient in its ∇² row, at order 2, shall be negative: with the wrong sign the row couples the
     /// node to itself as a source, and the local system loses its diagonal.
     pub negative_diagonal: bool,
@@ -64,12 +71,15 @@ pub(crate) fn sound_star(
         let first_size = if order == demand.order { demand.size } else { default_star(order) }.max(n_monomials(order));
         let demand = Demand { order, negative_diagonal: demand.negative_diagonal && order == 2, ..demand };
         let mut best: Option<Candidate> = None;
-        // Nodes from all sides are tried where the nearest leave a wrong sign.
-        for choice in [asked, StarChoice::Balanced] {
-            if best.is_some_and(|best| !best.wrong_sign) || best.is_some() && choice == asked {
+        // Nodes from all sides are tried where the nearest leave a wrong sign, then flatter weights.
+        let balanced = (asked != StarChoice::Balanced).then_some((StarChoice::Balanced, 0.0));
+        let flatter = FLATTER.map(|g| (StarChoice::Balanced, g));
+        for (choice, g) in std::iter::once((asked, 0.0)).chain(balanced).chain(flatter) {
+            if best.is_some_and(|best| !best.wrong_sign) {
                 break;
             }
             finder.choose(choice);
+            let demand = Demand { flattening: g.max(demand.smoothing), ..demand };
             let mut last_found = 0;
             for wanted in sizes(first_size, order) {
                 let candidate = try_star(finder, mwls, node, demand, wanted, star);
@@ -87,9 +97,9 @@ pub(crate) fn sound_star(
         }
         if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
             // The star of the last try may not be the best one: find that again.
-            let Candidate { choice, wanted, hidden, condition, wrong_sign } = best;
+            let Candidate { choice, flattening, wanted, hidden, condition, wrong_sign } = best;
             finder.choose(choice);
-            try_star(finder, mwls, node, demand, wanted, star);
+            try_star(finder, mwls, node, Demand { flattening, ..demand }, wanted, star);
             finder.choose(asked);
             return StarOutcome { order, enlarged: wanted > first_size, hidden, condition, wrong_sign };
         }
@@ -102,6 +112,7 @@ pub(crate) fn sound_star(
 #[derive(Clone, Copy)]
 struct Candidate {
     choice: StarChoice,
+    flattening: f64,
     wanted: usize,
     hidden: usize,
     condition: f64,
@@ -129,14 +140,14 @@ fn try_star(
         Some(centre) => {
             let met = (demand.smoothing == 0.0).then_some(centre);
             let points = star.iter().map(|n| places[n.index()]);
-            mwls.factorise(points, places[node.index()], met, demand.order, demand.smoothing)
+            mwls.factorise(points, places[node.index()], met, demand.order, demand.flattening)
         }
         None => f64::INFINITY,
     };
     let wrong_sign = demand.negative_diagonal
         && condition <= MAX_CONDITION
         && laplacian_diagonal(mwls, finder, star.iter().position(|n| *n == node)) >= 0.0;
-    Candidate { choice: finder.choice(), wanted, hidden, condition, wrong_sign }
+    Candidate { choice: finder.choice(), flattening: demand.flattening, wanted, hidden, condition, wrong_sign }
 }
 
 /// The node's own coefficient in its ∇² row, in scaled coordinates: ∇² of the polynomial through 1 at the node, 0 at the

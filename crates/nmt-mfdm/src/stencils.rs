@@ -78,8 +78,9 @@ pub struct Stencils {
     params: StarParams,
     metric: Metric,
     first: usize,       // number of the first node
-    starts: Vec<usize>, // first star entry of each node, shape (n + 1,)
-    nodes: Vec<NodeId>, // star after star, each ascending
+    starts: Vec<usize>, // first star entry of each node, shape (n,)
+    sizes: Vec<u32>,    // nodes in each star, shape (n,)
+    nodes: Vec<NodeId>, // star after star, each ascending; those of mended stars at the end, their first ones left
     rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<StarOutcome>,
@@ -116,7 +117,6 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
-        let n_rows = n_monomials(params.order) - params.first_row();
         let metric = surroundings.metric();
         let first = range.start;
         let pieces = map_chunks(range, |piece| {
@@ -126,24 +126,17 @@ impl Stencils {
             let StarParams { order, size, smoothing, .. } = params;
             for node in piece {
                 let negative_diagonal = node >= surroundings.n_boundary();
-                let demand = Demand { order, size, smoothing, negative_diagonal };
+                let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
                 let outcome = sound_star(&mut finder, &mut mwls, NodeId::of(node), demand, &mut star);
-                let before = part.rows.len();
-                if outcome.order > 0 {
-                    mwls.rows(&mut part.rows);
-                }
-                part.rows.resize(before + n_rows * star.len(), 0.0);
-                part.nodes.extend(&star);
-                part.starts.push(part.nodes.len());
-                part.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
-                part.outcomes.push(outcome);
+                part.push(&star, &mut mwls, outcome);
             }
             part
         });
         let mut all = Self::empty(params, metric, first);
         for part in pieces {
             let offset = all.nodes.len();
-            all.starts.extend(part.starts[1..].iter().map(|start| start + offset));
+            all.starts.extend(part.starts.iter().map(|start| start + offset));
+            all.sizes.extend(part.sizes);
             all.nodes.extend(part.nodes);
             all.rows.extend(part.rows);
             all.radii.extend(part.radii);
@@ -152,10 +145,51 @@ impl Stencils {
         all
     }
 
+    /// Appends the star that `mwls` holds.
+    fn push(&mut self, star: &[NodeId], mwls: &mut Mwls, outcome: StarOutcome) {
+        let before = self.rows.len();
+        if outcome.order > 0 {
+            mwls.rows(&mut self.rows);
+        }
+        self.rows.resize(before + self.n_rows() * star.len(), 0.0);
+        self.starts.push(self.nodes.len());
+        self.sizes.push(star.len() as u32);
+        self.nodes.extend(star);
+        self.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
+        self.outcomes.push(outcome);
+    }
+
+    /// Rows of a star.
+    fn n_rows(&self) -> usize {
+        n_monomials(self.params.order) - self.params.first_row()
+    }
+
+    /// Gives `nodes` larger stars: half as many nodes again as they have, at least, each sound as those of
+    /// [`Self::new`] are.
+    pub(crate) fn enlarge(&mut self, surroundings: &Surroundings, nearest: &Nearest, nodes: &[NodeId]) {
+        let mut finder = StarFinder::new(surroundings, nearest, self.params.choice);
+        let (mut mwls, mut star) = (Mwls::default(), Vec::new());
+        let StarParams { order, smoothing, .. } = self.params;
+        for &node in nodes {
+            let k = node.index() - self.first;
+            let size = (3 * self.sizes[k] as usize).div_ceil(2);
+            let negative_diagonal = node.index() >= surroundings.n_boundary();
+            let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
+            let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
+            self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
+            // What was appended takes the place of the node's own.
+            self.starts.swap_remove(k);
+            self.sizes.swap_remove(k);
+            self.radii.swap_remove(k);
+            self.outcomes.swap_remove(k);
+        }
+    }
+
     /// A constant about each of `n_nodes` nodes, its value: blended, they are the linear interpolant of finite elements.
     pub(crate) fn constants(n_nodes: usize) -> Self {
         let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain(), 0);
-        stencils.starts = vec![0; n_nodes + 1];
+        stencils.starts = vec![0; n_nodes];
+        stencils.sizes = vec![0; n_nodes];
         stencils.radii = vec![1.0; n_nodes];
         stencils
     }
@@ -189,7 +223,8 @@ impl Stencils {
             params,
             metric,
             first,
-            starts: vec![0],
+            starts: Vec::new(),
+            sizes: Vec::new(),
             nodes: Vec::new(),
             rows: Vec::new(),
             radii: Vec::new(),
@@ -215,8 +250,8 @@ impl Stencils {
     /// The stencil of a node of the range.
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
         let k = node.index() - self.first;
-        let star = self.starts[k]..self.starts[k + 1];
-        let n_rows = n_monomials(self.params.order) - self.params.first_row();
+        let star = self.starts[k]..self.starts[k] + self.sizes[k] as usize;
+        let n_rows = self.n_rows();
         Stencil {
             nodes: &self.nodes[star.clone()],
             radius: self.radii[k],

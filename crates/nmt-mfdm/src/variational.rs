@@ -4,32 +4,60 @@ use crate::assembly::{Setting, dirichlet_row};
 use crate::blend::barycentric_gradients;
 use crate::error::MfdmError;
 use crate::parallel::map_chunks;
-use crate::system::{Equation, LinearSystem, RowSum};
+use crate::system::{Equation, RowSum};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::{NodeId, TriId};
-use nmt_tri::Mesh;
+use nmt_tri::{Mesh, NodeTris};
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
-pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
-    let Setting { mesh, roles, node_tris, source, fluxes, .. } = setting;
-    let n_nodes = mesh.cloud().n_nodes();
-    let pieces = map_chunks(0..roles.n_unknowns, |piece| {
-        let (mut sum, mut gathered) = (RowSum::new(n_nodes), Gathered::default());
-        let equation = |k: usize| {
-            let node = roles.node(k);
-            if let Some(equation) = dirichlet_row(setting, node, &mut sum)? {
-                return Ok(equation);
-            }
-            let around = node_tris.around(node);
-            let slopes = around.iter().map(|&t| (t, hat_slope(mesh, t, node)));
-            weak.add(slopes, &mut gathered, &mut sum);
-            let rhs = source.with_hat(mesh, &setting.source_rule, fluxes, node, around)?;
-            Ok(Equation { row: sum.take(roles), rhs })
-        };
-        piece.map(equation).collect::<Result<Vec<_>, MfdmError>>()
+pub(crate) fn equations(setting: &Setting, weak: &WeakForm) -> Result<Vec<Equation>, MfdmError> {
+    let pieces = map_chunks(0..setting.roles.n_unknowns, |piece| {
+        let mut maker = EquationMaker::new(setting, weak);
+        piece.map(|k| maker.of(k)).collect::<Result<Vec<_>, MfdmError>>()
     });
-    let equations = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(LinearSystem::of(roles.n_holes, equations.into_iter().flatten()))
+    let pieces = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(pieces.into_iter().flatten().collect())
+}
+
+/// Makes equations; one a thread, with room to be used again.
+pub(crate) struct EquationMaker<'a> {
+    setting: &'a Setting<'a>,
+    weak: &'a WeakForm<'a>,
+    sum: RowSum,
+    gathered: Gathered,
+}
+
+impl<'a> EquationMaker<'a> {
+    pub fn new(setting: &'a Setting<'a>, weak: &'a WeakForm<'a>) -> Self {
+        let sum = RowSum::new(setting.mesh.cloud().n_nodes());
+        Self { setting, weak, sum, gathered: Gathered::default() }
+    }
+
+    /// The equation of unknown `k`.
+    ///
+    /// # Errors
+    /// [`MfdmError::Datum`] where the source is not finite.
+    pub fn of(&mut self, k: usize) -> Result<Equation, MfdmError> {
+        let Setting { mesh, roles, node_tris, source, fluxes, source_rule, .. } = *self.setting;
+        let node = roles.node(k);
+        if let Some(equation) = dirichlet_row(self.setting, node, &mut self.sum)? {
+            return Ok(equation);
+        }
+        let around = node_tris.around(node);
+        let slopes = around.iter().map(|&t| (t, hat_slope(mesh, t, node)));
+        self.weak.add(slopes, &mut self.gathered, &mut self.sum);
+        let rhs = source.with_hat(mesh, source_rule, fluxes, node, around)?;
+        Ok(Equation { row: self.sum.take(roles), rhs })
+    }
+}
+
+/// ∫|∇v|² of a node's hat.
+pub(crate) fn hat_energy(mesh: &Mesh, node_tris: &NodeTris, node: NodeId) -> f64 {
+    let of_triangle = |&t: &TriId| {
+        let slope = hat_slope(mesh, t, node);
+        mesh.area(t) * (slope[0] * slope[0] + slope[1] * slope[1])
+    };
+    node_tris.around(node).iter().map(of_triangle).sum()
 }
 
 /// Gradient on `triangle` of the hat of one of its nodes.

@@ -1,13 +1,15 @@
 //! The pictures of a run: nodes, mesh and the four panels of the solution, from the pipeline's data.
 
+use crate::edges::{EdgeTable, loop_name};
 use crate::pipeline::{MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::plot::{
-    Caption, Fields, NodeMark, Part, PoissonFields, histogram_figure, mesh_figure, nodes_figure, poisson_figure,
-    solution_figure,
+    Caption, EdgeProfile, Fields, NodeMark, Part, PoissonFields, Profiles, edges_figure, histogram_figure, mesh_figure,
+    nodes_figure, poisson_figure, solution_figure,
 };
 use crate::problem::Problem;
 use nmt_cloud::{Cloud, NodeKind};
 use nmt_geom::{LoopId, NodeId};
+use nmt_mfdm::{EdgePoint, EdgeStress};
 use nmt_tri::{Mesh, Stages, quality};
 
 /// What a picture needs of one cloud or mesh, in the plain form that [`crate::plot`] takes.
@@ -125,6 +127,52 @@ pub fn solution_svg(problem: &Problem, parts: &[SolvedPart]) -> String {
         })
         .collect();
     solution_figure(&caption(problem), &figures)
+}
+
+/// edges.svg: τ along the edges of every subdomain.
+pub fn edges_svg(problem: &Problem, parts: &[SolvedPart]) -> String {
+    /// Slices of one edge, to be lent to its profile.
+    struct Along {
+        ring: LoopId,
+        xy: Vec<[f64; 2]>,
+        s: Vec<f64>,
+        tau: Vec<f64>,
+    }
+    let tables: Vec<EdgeTable> = parts.iter().map(EdgeTable::of).collect();
+    let of_edges = |(solved, table): (&SolvedPart, &EdgeTable)| -> Vec<Along> {
+        let nodes = solved.part.mesh.xy();
+        let along = |edge: &EdgeStress| Along {
+            ring: edge.ring,
+            xy: edge.points.iter().map(|p| nodes[p.node.index()]).collect(),
+            s: edge.points.iter().map(|p| p.s).collect(),
+            tau: edge.points.iter().map(|p| p.stress.magnitude()).collect(),
+        };
+        table.edges.iter().map(along).collect()
+    };
+    let edges: Vec<Vec<Along>> = parts.iter().zip(&tables).map(of_edges).collect();
+    let loops_of = |k: usize| -> Vec<Vec<EdgeProfile>> {
+        let (solved, table) = (&parts[k], &tables[k]);
+        let is_singular = |point: Option<&EdgePoint>| point.is_some_and(|p| table.is_singular(p.node));
+        let mut loops: Vec<Vec<EdgeProfile>> = table.loops.iter().map(|_| Vec::new()).collect();
+        for (edge, along) in table.edges.iter().zip(&edges[k]) {
+            let Along { ring, xy, s, tau } = along;
+            let name = solved.part.edge_names.get(edge.edge.index()).map_or("", String::as_str);
+            let is_singular = [edge.points.first(), edge.points.last()].map(is_singular);
+            loops[ring.index()].push(EdgeProfile { name, length: edge.length, xy, s, tau, is_singular });
+        }
+        loops
+    };
+    let loops: Vec<Vec<Vec<EdgeProfile>>> = (0..parts.len()).map(loops_of).collect();
+    let names_of = |(solved, table): (&'_ SolvedPart, &EdgeTable)| -> Vec<String> {
+        table.loops.iter().map(|around| loop_name(solved, around.ring).to_owned()).collect()
+    };
+    let names: Vec<Vec<String>> = parts.iter().zip(&tables).map(names_of).collect();
+    let names: Vec<Vec<&str>> = names.iter().map(|own| own.iter().map(String::as_str).collect()).collect();
+    let profiles = parts.iter().zip(&loops).zip(&names);
+    let profiles: Vec<Profiles> = profiles
+        .map(|((solved, loops), names)| Profiles { name: &solved.part.name, loop_names: names, loops })
+        .collect();
+    edges_figure(&caption(problem), &profiles)
 }
 
 /// solution.svg of a Poisson problem: u, its derivatives, and its error where the exact solution is given, otherwise |∇u|.

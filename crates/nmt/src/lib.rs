@@ -23,6 +23,7 @@
 //! Features: `png` (default) draws PNG beside SVG; `parallel` uses all cores, and changes no number.
 
 pub mod compare;
+pub mod edges;
 mod error;
 pub mod figures;
 pub mod io;

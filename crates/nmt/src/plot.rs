@@ -16,14 +16,17 @@
 //! | `topology` | edges and rim of a triangulation; edges as few long lines |
 //! | `contour`, `simplify` | boundary of {value ≥ level}, traced exactly, then thinned to what the eye sees |
 //! | `colour`, `scale` | colour maps; values → bands of colour, and the colour bar |
-//! | `nodes`, `mesh`, `solution`, `histogram`, `compare` | the figures |
+//! | `strip`, `names` | a diagram over a length; names of edges, none over another |
+//! | `nodes`, `mesh`, `solution`, `edges`, `histogram`, `compare` | the figures |
 
 mod axes;
 mod colour;
 mod compare;
 mod contour;
+mod edges;
 mod histogram;
 mod mesh;
+mod names;
 mod nodes;
 mod page;
 #[cfg(feature = "png")]
@@ -32,6 +35,7 @@ mod scale;
 mod scene;
 mod simplify;
 mod solution;
+mod strip;
 mod svg;
 mod text;
 mod ticks;
@@ -95,6 +99,34 @@ pub struct PoissonFields<'a> {
     pub error: Option<&'a [f64]>,
 }
 
+/// τ along one edge. Slices of the nodes in order along it, both end vertices included, are of one shape (n_edge_nodes,).
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeProfile<'a> {
+    /// Name of the edge.
+    pub name: &'a str,
+    /// Its length, in the user's length unit.
+    pub length: f64,
+    /// Coordinates of its nodes.
+    pub xy: &'a [[f64; 2]],
+    /// Arc length of each node from the edge's first vertex.
+    pub s: &'a [f64],
+    /// τ at each node.
+    pub tau: &'a [f64],
+    /// True where the exact τ is infinite at its first and at its last vertex.
+    pub is_singular: [bool; 2],
+}
+
+/// τ along all edges of one subdomain.
+#[derive(Clone, Copy, Debug)]
+pub struct Profiles<'a> {
+    /// Name of the subdomain.
+    pub name: &'a str,
+    /// Names of the loops, the main contour first.
+    pub loop_names: &'a [&'a str],
+    /// The edges of each loop, in order around it.
+    pub loops: &'a [Vec<EdgeProfile<'a>>],
+}
+
 /// What is written around a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Caption<'a> {
@@ -144,6 +176,14 @@ pub fn poisson_figure(caption: &Caption<'_>, parts: &[(Part<'_>, PoissonFields<'
         if panel.is_signed() && *panel != solution::ERROR { gradient } else { 0.0 }
     };
     svg::render(&solution::scene(caption, &panels, &fields, size))
+}
+
+/// SVG text of τ along the edges: of each subdomain a drawing that names its edges, and for each loop a diagram over the
+/// arc length around it, all of a subdomain to one scale.
+///
+/// Peaks at vertices where τ is infinite are cut off where they would squeeze the rest.
+pub fn edges_figure(caption: &Caption<'_>, subdomains: &[Profiles<'_>]) -> String {
+    svg::render(&edges::scene(caption, subdomains))
 }
 
 /// One line of the picture of errors.

@@ -1,6 +1,7 @@
 //! One report model, rendered as JSON or text.
 
 mod common;
+mod edges;
 mod model;
 mod points;
 mod poisson;
@@ -12,6 +13,7 @@ mod thickness;
 mod warnings;
 
 pub use common::CommonEdgeReport;
+pub use edges::{EdgeReport, LoopReport};
 pub use model::{CensusReport, HoleReport, QualityReport, Report, Seconds, SolutionReport, SubdomainReport, Totals};
 pub use points::{PointReport, PointValues};
 pub use poisson::{ErrorReport, FluxReport, PoissonReport};

@@ -5,9 +5,9 @@ use crate::args::SolveArgs;
 use crate::exit::Failure;
 use crate::files::OutDir;
 use crate::timing::Stopwatch;
-use nmt::figures::{mesh_svg, nodes_svg, solved_svg};
-use nmt::io::{NodeFields, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
-use nmt::pipeline::{clouds, meshes, solved};
+use nmt::figures::{edges_svg, mesh_svg, nodes_svg, solved_svg};
+use nmt::io::{NodeFields, csv_of_edges, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
+use nmt::pipeline::{Solved, clouds, meshes, solved};
 use nmt::report::Report;
 
 /// Runs the command.
@@ -30,6 +30,10 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
         out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
         out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
         out.write_picture("solution", &solved_svg(&problem, &solved))?;
+        if let Solved::Torsion(parts) = &solved {
+            out.write("edges.csv", csv_of_edges(parts))?;
+            out.write_picture("edges", &edges_svg(&problem, parts))?;
+        }
     }
     finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, args.out.as_deref())
 }

@@ -2,6 +2,7 @@
 //! star by star.
 
 mod convergence;
+mod edges;
 mod holes;
 mod invariance;
 mod poisson;

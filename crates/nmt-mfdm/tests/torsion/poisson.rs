@@ -139,6 +139,23 @@ fn errors_fall_with_the_order_under_mixed_conditions() {
 }
 
 #[test]
+fn no_node_of_an_irregular_cloud_wanders_in_the_variational_form() {
+    let section = Section::solid(Outline::ellipse([0.0, 0.0], [1.0, 0.6], 0.3));
+    let u: Field = |[x, y]| (3.0 * x).sin() * (2.0 * y).cos();
+    let laplacian: Field = |[x, y]| -13.0 * (3.0 * x).sin() * (2.0 * y).cos();
+    // Measured over 40 seeds: 5.3e-5 at the worst, 5.4e-4 where soft nodes are left as they are (with these seeds 3.4e-4).
+    for seed in [1, 2, 10, 11] {
+        let cloud = CloudParams { nodes: [81, 81], irregularity: 0.25, seed, ..CloudParams::default() };
+        let mesh = Mesh::constrained(generate(&section, &cloud).expect("a cloud")).expect("a mesh");
+        let problem = PoissonProblem { source: &laplacian, boundary: &u, fluxes: vec![], section: &section };
+        let solution = solve_poisson(&problem, &mesh, &SolveParams::default()).expect("a solution");
+        let error = solution.errors(&mesh, u).max;
+        assert!(error < 6e-5, "seed {seed}: {error:e}");
+        assert!((1..100).contains(&solution.stars.enlarged), "seed {seed}: {} mended", solution.stars.enlarged);
+    }
+}
+
+#[test]
 fn fluxes_alone_and_data_that_are_not_finite_are_told() {
     let section = Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0]));
     let mesh = mesh(&section, 9, 0.0);

@@ -62,7 +62,7 @@ pub(super) const POISSON: [Panel; 4] = [
     Panel { name: "Solution", symbol: "u", subscript: "", map: Map::Sequential, id: "u" },
     Panel { name: "Derivative", symbol: "u", subscript: ",x", map: Map::Diverging, id: "u-x" },
     Panel { name: "Derivative", symbol: "u", subscript: ",y", map: Map::Diverging, id: "u-y" },
-    Panel { name: "Magnitude of the gradient", symbol: "|∇u|", subscript: "", map: Map::Sequential, id: "gradient" },
+    Panel { name: "Size of the gradient", symbol: "|grad u|", subscript: "", map: Map::Sequential, id: "gradient" },
 ];
 
 /// The last panel of a Poisson problem whose exact solution is known.

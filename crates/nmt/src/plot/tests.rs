@@ -243,3 +243,68 @@ fn contours_have_no_seams_since_each_band_is_one_path() {
     // Four panels of at most 25 bands, once on the section and once on the bar, and a few lines each.
     assert!(svg.matches("<path").count() < 4 * (2 * 25 + 5) + 1);
 }
+
+/// A regular polygon of `n` edges, node `n_nodes` to each, τ a half wave; every `k`-th vertex singular.
+fn profiles_of(n: usize, n_nodes: usize, k: usize, draw: impl Fn(&[Profiles<'_>])) {
+    let names: Vec<String> = (1..=n).map(|i| format!("edge {i}")).collect();
+    let corner = |i: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+        [cosine, sine]
+    };
+    let share = |j: usize| j as f64 / (n_nodes - 1) as f64;
+    let at = |i: usize, j: usize| [0, 1].map(|d| corner(i)[d] + share(j) * (corner(i + 1)[d] - corner(i)[d]));
+    let xy: Vec<Vec<[f64; 2]>> = (0..n).map(|i| (0..n_nodes).map(|j| at(i, j)).collect()).collect();
+    let s: Vec<f64> = (0..n_nodes).map(share).collect();
+    let tau: Vec<f64> = s.iter().map(|s| (3.1 * s).sin() + if *s == 0.0 { 50.0 } else { 0.0 }).collect();
+    let edge = |i: usize| EdgeProfile {
+        name: &names[i],
+        length: 1.0,
+        xy: &xy[i],
+        s: &s,
+        tau: &tau,
+        is_singular: [i, (i + 1) % n].map(|i| k > 0 && i % k == 0),
+    };
+    let loops = [(0..n).map(edge).collect()];
+    draw(&[Profiles { name: "one", loop_names: &["contour"], loops: &loops }]);
+}
+
+#[test]
+fn names_along_edges_do_not_overlap_and_stay_on_the_page_with_3_edges_and_with_60() {
+    for (n, k) in [(3, 0), (30, 1), (30, 3), (60, 0), (200, 2)] {
+        profiles_of(n, 9, k, |profiles| {
+            let scene = edges::scene(&Caption { title: "Along edges", units: "mm" }, profiles);
+            let mut boxes = Vec::new();
+            text_boxes(&scene.shapes, &mut boxes);
+            assert!(boxes.iter().filter(|(_, text)| text.starts_with("edge")).count() >= n.min(50));
+            for (i, ([left, top, right, bottom], text)) in boxes.iter().enumerate() {
+                assert!(*left >= 0.0 && *top >= 0.0 && *right <= scene.width && *bottom <= scene.height, "{n}: {text}");
+                for (other, name) in &boxes[..i] {
+                    let apart = other[2] <= *left || *right <= other[0] || other[3] <= *top || *bottom <= other[1];
+                    assert!(apart, "{n}: \"{text}\" overlaps \"{name}\"");
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn edges_without_values_or_extent_make_a_picture_without_nan() {
+    let edge = |tau: &'static [f64]| EdgeProfile {
+        name: "e1",
+        length: f64::NAN,
+        xy: &[[0.0, 0.0], [f64::NAN, 1e300]],
+        s: &[0.0, 1.0],
+        tau,
+        is_singular: [true, false],
+    };
+    for loops in [vec![], vec![vec![]], vec![vec![edge(&[f64::NAN, f64::INFINITY])]], vec![vec![edge(&[])]]] {
+        let svg = edges_figure(
+            &Caption { title: "", units: "" },
+            &[Profiles { name: "", loop_names: &["contour"], loops: &loops }],
+        );
+        assert!(
+            svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf\"") && !svg.contains("inf "),
+            "{svg}"
+        );
+    }
+}

@@ -3,6 +3,7 @@
 use crate::pipeline::{CloudPart, MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
+use crate::report::edges::{AlongEdges, EdgeReport, LoopReport};
 use crate::report::points::{self, PointReport, PointValues};
 use crate::report::poisson::PoissonReport;
 use crate::report::singular::singular_vertices;
@@ -202,6 +203,10 @@ pub struct SolutionReport {
     pub tau_max_at: Point,
     /// Vertices where the exact τ is infinite.
     pub tau_singular_at: Vec<Point>,
+    /// τ along each edge, in the order of the file.
+    pub edges: Vec<EdgeReport>,
+    /// ∮τ·ds of each loop, the contour first.
+    pub loops: Vec<LoopReport>,
     /// ‖b − Ax‖/‖b‖.
     pub linear_residual: f64,
     /// What became of the stars; absent for finite elements, which have none.
@@ -425,6 +430,7 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
 
 fn solved_report(solved: &SolvedPart) -> SubdomainReport {
     let SolvedPart { part, params, solution } = solved;
+    let AlongEdges { edges, loops } = AlongEdges::of(solved);
     let hole = |(name, hole): (&String, &nmt_mfdm::HoleResult)| HoleReport {
         name: name.clone(),
         condition: hole.condition.name(),
@@ -446,6 +452,8 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         tau_max: solution.tau_max.value,
         tau_max_at: solution.tau_max.at,
         tau_singular_at: singular_vertices(&part.section),
+        edges,
+        loops,
         linear_residual: solution.linear_residual,
         stars: StarsReport::of(params, &solution.stars),
     };

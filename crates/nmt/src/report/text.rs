@@ -1,6 +1,7 @@
 //! The report as text: the paper's report of generated and deleted nodes, mesh, solver, results.
 
 use crate::report::common::CommonEdgeReport;
+use crate::report::edges;
 use crate::report::model::{Report, SmoothingReport, SolutionReport, SubdomainReport};
 use crate::report::points::{PointReport, PointValues};
 use crate::report::poisson::{ErrorReport, PoissonReport};
@@ -149,6 +150,12 @@ impl<U: Fn(i32) -> String> Text<U> {
         let grows =
             if s.tau_singular_at.is_empty() { "" } else { " (largest at nodes; infinite at re-entrant vertices)" };
         self.row("τ_max", format!("{} at {}{grows}", number(s.tau_max), place(s.tau_max_at)));
+        for around in &s.loops {
+            self.row(&format!("∮τ ds, {}", around.name), edges::circulation(around));
+        }
+        let rows = edges::rows(&s.edges, &(self.length)(1));
+        let _ = writeln!(self.out, "  τ along edges");
+        self.table("    ", &rows);
     }
 
     fn formulation(&mut self, name: &str, order: usize, variational: Option<VariationalReport>, unknowns: usize) {
@@ -212,15 +219,22 @@ impl<U: Fn(i32) -> String> Text<U> {
             [edge.between.join(", "), edge.edges.join(", "), place(edge.from), place(edge.to), nodes, conforming]
         };
         let rows: Vec<[String; 6]> = std::iter::once(heads).chain(common.iter().map(row)).collect();
-        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let widths: [usize; 6] = std::array::from_fn(width);
         let _ = writeln!(self.out, "Common edges");
-        for row in &rows {
-            let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
-            let line = cells.collect::<Vec<_>>().join("   ");
-            let _ = writeln!(self.out, "  {}", line.trim_end());
-        }
+        self.table("  ", &rows);
         self.out.push('\n');
+    }
+
+    /// Rows in columns as wide as their widest cell.
+    fn table(&mut self, indent: &str, rows: &[impl AsRef<[String]>]) {
+        let width = |column: usize| {
+            let cells = rows.iter().filter_map(|row| row.as_ref().get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        for row in rows {
+            let cells = row.as_ref().iter().enumerate().map(|(column, cell)| format!("{cell:w$}", w = width(column)));
+            let line = cells.collect::<Vec<_>>().join("   ");
+            let _ = writeln!(self.out, "{indent}{}", line.trim_end());
+        }
     }
 
     fn stars(&mut self, s: &StarsReport) {
@@ -270,7 +284,7 @@ pub fn place([x, y]: [f64; 2]) -> String {
 }
 
 /// Seven significant digits, with an exponent where zeros would hide them.
-fn number(v: f64) -> String {
+pub(super) fn number(v: f64) -> String {
     let size = v.abs();
     if size == 0.0 {
         "0".into()

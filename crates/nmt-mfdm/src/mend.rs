@@ -1,0 +1,76 @@
+//! Stars that leave the variational equations soft, mended: a node whose own coefficient is small can wander.
+//!
+//! ∫∇φ_k·∇v_k, the coefficient of node k in the equation of its own hat v_k, is near that of linear elements, ∫|∇v_k|².
+//! On irregular clouds one node in some thousands, most often two neighbours at once, has a quarter of it, with positive
+//! coefficients beside it: values that alternate between the two cost next to nothing, and the error there is ten to
+//! fifty times that around. Larger stars bring the coefficient back. Measured on an ellipse with 5000 nodes, order 2, over
+//! 40 seeds: at an irregularity of 0.25 some 20 stars are mended and the largest error of all seeds falls from 5.4e-4 to
+//! 5.3e-5; at 0.4 some 280, and the mean of the largest errors falls from 3e-3 to 1.4e-4.
+
+use crate::assembly::{Frame, Setting};
+use crate::error::MfdmError;
+use crate::gauss::Rule;
+use crate::stencils::Stencils;
+use crate::surroundings::Surroundings;
+use crate::system::{Equation, Role};
+use crate::variational::{EquationMaker, hat_energy};
+use crate::weak::WeakForm;
+use nmt_cloud::Nearest;
+use nmt_geom::NodeId;
+
+/// Least share of the linear elements' own coefficient.
+const SOFT: f64 = 0.5;
+
+/// Times that stars are enlarged, by half each time.
+const ROUNDS: usize = 3;
+
+/// Enlarges the stars of soft nodes, and of those beside them, and makes the equations that they enter anew.
+///
+/// # Errors
+/// As the equations have them.
+pub(crate) fn mend(
+    frame: Frame,
+    around: (&Surroundings, &Nearest),
+    rule: &Rule,
+    stencils: &mut Stencils,
+    equations: &mut [Equation],
+) -> Result<(), MfdmError> {
+    for _ in 0..ROUNDS {
+        let soft = soft_nodes(frame, equations);
+        if soft.is_empty() {
+            break;
+        }
+        stencils.enlarge(around.0, around.1, &soft);
+        let setting: Setting = frame.with(stencils);
+        let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
+        let mut maker = EquationMaker::new(&setting, &weak);
+        for k in touched(frame, &soft) {
+            equations[k] = maker.of(k)?;
+        }
+    }
+    Ok(())
+}
+
+/// The nodes whose own coefficient is below [`SOFT`] of what linear elements have, ascending.
+fn soft_nodes(frame: Frame, equations: &[Equation]) -> Vec<NodeId> {
+    let is_soft = |&(k, equation): &(usize, &Equation)| {
+        let row = &equation.row.unknowns;
+        let own = row.binary_search_by_key(&(k as u32), |entry| entry.0).map_or(0.0, |entry| row[entry].1);
+        own < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k))
+    };
+    equations.iter().enumerate().filter(is_soft).map(|(k, _)| frame.roles.node(k)).collect()
+}
+
+/// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.
+fn touched(frame: Frame, nodes: &[NodeId]) -> Vec<usize> {
+    let triangles = nodes.iter().flat_map(|&node| frame.node_tris.around(node));
+    let corners = triangles.flat_map(|t| frame.mesh.tri_nodes()[t.index()]);
+    let unknown = corners.filter_map(|node| match frame.roles.of(node) {
+        Role::Unknown(k) => Some(k as usize),
+        Role::Hole(_) | Role::Known(_) => None,
+    });
+    let mut all: Vec<usize> = unknown.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
