@@ -3,9 +3,10 @@
 use crate::golden::read_problem;
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::{edges_svg, solution_svg, stages_svg};
-use nmt::pipeline::clouds;
+use nmt::figures::{edges_svg, solution_svg, stages_svg, star_svg};
+use nmt::pipeline::{clouds, meshes};
 use nmt::prelude::*;
+use nmt::star::StarView;
 use std::fs;
 
 /// The problems whose four panels the documentation shows.
@@ -16,6 +17,9 @@ const EDGES: &str = "i-section";
 
 /// The problem whose mesh the documentation shows in its four stages.
 const STAGES: &str = "bare-segment";
+
+/// The node of that problem whose star the documentation shows.
+const STAR: usize = 27;
 
 /// Redraws docs/figures.
 pub fn draw() -> Result<()> {
@@ -32,7 +36,8 @@ pub fn draw() -> Result<()> {
             write(&format!("{STAGES}-{letter}"), picture)?;
         }
     }
-    Ok(())
+    let parts = meshes(&problem, clouds(&problem, &mut |_, _| {})?, &mut |_, _| {})?;
+    write(&format!("star-{STAR}"), &star_svg(&problem, &StarView::new(&problem, &parts, None, STAR)?))
 }
 
 fn shipped(name: &str) -> Result<Problem> {

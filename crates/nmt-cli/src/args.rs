@@ -26,6 +26,16 @@ pub enum Command {
     Solve(SolveArgs),
     /// Solve by every formulation on the same clouds: unknowns, J, error and time side by side
     Compare(CompareArgs),
+    /// Draw one thing
+    #[command(subcommand)]
+    Plot(Picture),
+}
+
+/// What `nmt plot` draws.
+#[derive(Debug, Subcommand)]
+pub enum Picture {
+    /// The star of one node as the equations use it: weights, hidden nodes, the row of ∇²
+    Star(StarArgs),
 }
 
 /// The problem file and its densities.
@@ -170,6 +180,32 @@ pub struct CompareArgs {
     /// Directory for the files (created if need be)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// Options of `nmt plot star`.
+#[derive(Debug, clap::Args)]
+pub struct StarArgs {
+    /// Problem file (TOML)
+    pub file: PathBuf,
+    /// Number of the node in its subdomain, from 0, as in nodes.csv and mesh.vtu
+    #[arg(long, value_name = "N")]
+    pub node: usize,
+    /// Subdomain of the node, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub subdomain: Option<String>,
+    /// Densities N_x,N_y of every subdomain, instead of the file's
+    #[arg(long, value_name = "Nx,Ny", value_parser = counts)]
+    pub nodes: Option<[usize; 2]>,
+    /// Seed of the randomisation, 0 or more
+    #[arg(long, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    #[command(flatten)]
+    pub keys: SolveKeys,
+    #[command(flatten)]
+    pub mesh: MeshKeys,
+    /// Directory for star-N.svg and star-N.png (created if need be)
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub out: PathBuf,
 }
 
 impl ProblemArgs {

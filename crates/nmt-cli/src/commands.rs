@@ -5,12 +5,14 @@ mod compare;
 mod mesh;
 mod nodes;
 mod solve;
+mod star;
 
 pub use check::check;
 pub use compare::compare;
 pub use mesh::mesh;
 pub use nodes::nodes;
 pub use solve::solve;
+pub use star::star;
 
 use crate::args::ProblemArgs;
 use crate::exit::Failure;

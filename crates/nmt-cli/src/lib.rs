@@ -6,6 +6,7 @@
 //! nmt mesh FILE     the cloud and its triangles
 //! nmt solve FILE    torsion: F, τ, J
 //! nmt compare FILE  torsion by every formulation, side by side
+//! nmt plot star FILE --node N   the star of one node with its weights
 //! ```
 //!
 //! Exit codes: 0 done, 1 the problem is wrong, 2 usage, 3 the numerics failed, 4 input or output failed. Results go to
@@ -23,7 +24,7 @@ mod exit;
 mod files;
 mod timing;
 
-use args::{Args, Command};
+use args::{Args, Command, Picture};
 use clap::Parser as _;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -44,6 +45,7 @@ pub fn run<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) ->
         Command::Mesh(options) => commands::mesh(options),
         Command::Solve(options) => commands::solve(options),
         Command::Compare(options) => commands::compare(options),
+        Command::Plot(Picture::Star(options)) => commands::star(options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

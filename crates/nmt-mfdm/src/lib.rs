@@ -37,6 +37,7 @@ mod gauss;
 mod local;
 mod mend;
 mod mwls;
+mod one_star;
 mod parallel;
 mod params;
 mod poisson;
@@ -64,6 +65,7 @@ pub use edge_stress::{Circulation, EdgePoint, EdgeStress, circulations, edge_str
 pub use error::MfdmError;
 pub use gauss::{GAUSS_POINTS, Rule, six_points, three_points};
 pub use mwls::{MAX_CONDITION, Mwls};
+pub use one_star::{NodeStar, StarMember};
 pub use params::{SolveParams, default_gauss};
 pub use poisson::{ErrorNorms, PoissonProblem, PoissonSolution, solve_poisson, solve_poisson_observed};
 pub use post::{Extreme, Extremes, Stress, StressIntegral, extremes, residuals, stress_integrals};

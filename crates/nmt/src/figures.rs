@@ -3,10 +3,11 @@
 use crate::edges::{EdgeTable, loop_name};
 use crate::pipeline::{MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::plot::{
-    Caption, EdgeProfile, Fields, NodeMark, Part, PoissonFields, Profiles, edges_figure, histogram_figure, mesh_figure,
-    nodes_figure, poisson_figure, solution_figure,
+    Caption, EdgeProfile, Fields, NodeMark, Part, PoissonFields, Profiles, StarFigure, StarNode, edges_figure,
+    histogram_figure, mesh_figure, nodes_figure, poisson_figure, solution_figure, star_figure,
 };
 use crate::problem::Problem;
+use crate::star::StarView;
 use nmt_cloud::{Cloud, NodeKind};
 use nmt_geom::{LoopId, NodeId};
 use nmt_mfdm::{EdgePoint, EdgeStress};
@@ -212,4 +213,24 @@ pub fn solved_svg(problem: &Problem, solved: &Solved) -> String {
         Solved::Torsion(parts) => solution_svg(problem, parts),
         Solved::Poisson(parts) => poisson_svg(problem, parts),
     }
+}
+
+/// star-N.svg: the star of one node.
+pub fn star_svg(problem: &Problem, view: &StarView) -> String {
+    let StarView { part, star, .. } = view;
+    let drawn = Drawn::of_mesh(&part.name, &part.mesh);
+    let node = |member: &nmt_mfdm::StarMember| StarNode {
+        node: member.node.0,
+        weight: member.weight,
+        laplacian: member.laplacian,
+    };
+    let figure = StarFigure {
+        part: drawn.part(),
+        node: star.node.0,
+        members: &star.members.iter().map(node).collect::<Vec<_>>(),
+        hidden: &star.hidden.iter().map(|node| node.0).collect::<Vec<_>>(),
+        semi_axes: star.stretch.map(|stretch| star.radius / stretch),
+        about: &view.about(),
+    };
+    star_figure(&caption(problem), &figure)
 }

@@ -32,6 +32,7 @@ pub mod plot;
 pub mod prelude;
 pub mod problem;
 pub mod report;
+pub mod star;
 
 pub use error::NmtError;
 

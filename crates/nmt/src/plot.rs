@@ -17,7 +17,7 @@
 //! | `contour`, `simplify` | boundary of {value ≥ level}, traced exactly, then thinned to what the eye sees |
 //! | `colour`, `scale` | colour maps; values → bands of colour, and the colour bar |
 //! | `strip`, `names` | a diagram over a length; names of edges, none over another |
-//! | `nodes`, `mesh`, `solution`, `edges`, `histogram`, `compare` | the figures |
+//! | `nodes`, `mesh`, `solution`, `edges`, `histogram`, `compare`, `star` | the figures |
 
 mod axes;
 mod colour;
@@ -35,6 +35,7 @@ mod scale;
 mod scene;
 mod simplify;
 mod solution;
+mod star;
 mod strip;
 mod svg;
 mod text;
@@ -127,6 +128,34 @@ pub struct Profiles<'a> {
     pub loops: &'a [Vec<EdgeProfile<'a>>],
 }
 
+/// A node of a star to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct StarNode {
+    /// Its number.
+    pub node: u32,
+    /// Its weight; infinite where the polynomial meets its value exactly.
+    pub weight: f64,
+    /// Its coefficient in the ∇² row.
+    pub laplacian: Option<f64>,
+}
+
+/// One star to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct StarFigure<'a> {
+    /// The subdomain around it.
+    pub part: Part<'a>,
+    /// Its centre.
+    pub node: u32,
+    /// Its nodes, in the order of the table.
+    pub members: &'a [StarNode],
+    /// Nodes passed over since the boundary hides them.
+    pub hidden: &'a [u32],
+    /// Semi-axes of the ellipse within which nodes belong: a circle where distances are plain.
+    pub semi_axes: [f64; 2],
+    /// What is said of it below the picture.
+    pub about: &'a [String],
+}
+
 /// What is written around a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Caption<'a> {
@@ -184,6 +213,11 @@ pub fn poisson_figure(caption: &Caption<'_>, parts: &[(Part<'_>, PoissonFields<'
 /// Peaks at vertices where τ is infinite are cut off where they would squeeze the rest.
 pub fn edges_figure(caption: &Caption<'_>, subdomains: &[Profiles<'_>]) -> String {
     svg::render(&edges::scene(caption, subdomains))
+}
+
+/// SVG text of one star: the cloud around it, its nodes by weight, hidden nodes, and its ∇² row in a table.
+pub fn star_figure(caption: &Caption<'_>, figure: &StarFigure<'_>) -> String {
+    svg::render(&star::scene(caption, figure))
 }
 
 /// One line of the picture of errors.

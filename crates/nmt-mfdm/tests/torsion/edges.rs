@@ -110,7 +110,9 @@ fn holes_with_f_0_take_their_own_circulation_from_the_contour() {
         assert_eq!(differences[1].is_some(), holes == HoleCondition::Circulation);
         // An integral through nodes misses the peaks at re-entrant corners, where τ is infinite: 1 % are measured for the
         // contour with one of them, 12 % for the square hole with four and 5 nodes a side, 0.1 % for the round one.
-        for (difference, limit) in differences.iter().zip([0.02, 0.002, 0.15]) {
+        // Where holes have F = 0, theirs enters the contour's: 4 %.
+        let contour = if holes == HoleCondition::Zero { 0.06 } else { 0.02 };
+        for (difference, limit) in differences.iter().zip([contour, 0.002, 0.15]) {
             assert!(difference.is_none_or(|d| d.abs() < limit), "{holes:?}: {differences:?}");
         }
     }

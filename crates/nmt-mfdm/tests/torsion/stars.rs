@@ -5,7 +5,10 @@ use nmt_cloud::{Cloud, Section};
 use nmt_curve::Outline;
 use nmt_geom::point::distance;
 use nmt_geom::{NodeId, Point, segment};
-use nmt_mfdm::{StarChoice, StarFinder, StarParams, Stencils, Surroundings, n_monomials, row};
+use nmt_mfdm::{
+    NodeStar, SolveParams, StarChoice, StarFinder, StarParams, Stencils, Surroundings, TorsionProblem, n_monomials,
+    row, solve,
+};
 use nmt_tri::Mesh;
 use proptest::prelude::*;
 
@@ -219,5 +222,29 @@ fn no_laplacian_row_keeps_a_wrong_sign_on_the_most_irregular_clouds() {
         let report = Stencils::new(&surroundings, &nearest, params, range.clone()).report();
         assert_eq!(report.wrong_sign, 0, "{choice:?}");
         assert!(report.enlarged > 20, "{choice:?}: {}", report.enlarged);
+    }
+}
+
+#[test]
+fn one_star_opened_up_is_the_one_that_the_equations_use() {
+    let mesh = mesh(&holed_l(1.0, [0.0, 0.0]), &params([31, 21], 0.25, 3));
+    for params in
+        [SolveParams::default(), SolveParams { order: 3, stars: StarChoice::Balanced, ..SolveParams::default() }]
+    {
+        let solution = solve(&TorsionProblem::default(), &mesh, &params).expect("a sound problem");
+        let mut hidden = 0;
+        for (node, used) in solution.star_diagnostics.iter().enumerate() {
+            let star = NodeStar::of(mesh.cloud(), &params, NodeId::of(node)).expect("sound parameters");
+            let star = star.expect("meshless formulations have stars");
+            let size = (star.members.len(), star.outcome.order, star.radius, star.outcome.condition);
+            assert_eq!(size, (used.size as usize, used.order as usize, used.radius, used.condition), "{node}");
+            assert_eq!((star.hidden.len(), star.diagonal()), (used.hidden as usize, used.diagonal), "{node}");
+            hidden += star.hidden.len();
+            // A constant has no second derivative: rounding of the largest coefficient.
+            let row: Vec<f64> = star.members.iter().filter_map(|member| member.laplacian).collect();
+            let largest = row.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+            assert!(row.iter().sum::<f64>().abs() < 1e-10 * largest, "{node}");
+        }
+        assert!(hidden > 0);
     }
 }

@@ -152,12 +152,13 @@ pub(super) fn beside(edges: &[Named<'_>], mut taken: Vec<[f64; 4]>, bounds: [f64
     shapes
 }
 
-fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
+/// True where two boxes have more than their sides in common.
+pub(super) fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
 /// True where a straight line passes through a box: clipped to it, something is left.
-fn meets(bounds: [f64; 4], [p, q]: [Point; 2]) -> bool {
+pub(super) fn meets(bounds: [f64; 4], [p, q]: [Point; 2]) -> bool {
     let (mut low, mut high) = (0.0f64, 1.0f64);
     for k in 0..2 {
         let d = q[k] - p[k];
