@@ -80,6 +80,9 @@ pub struct SolveKeys {
     /// Its Gauss points a triangle: 1, 3, 4, 6, 7 or 12
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub gauss: Option<i64>,
+    /// Linear solver: auto, direct, or iterative (multigrid; auto takes it for large systems)
+    #[arg(long)]
+    pub solver: Option<String>,
 }
 
 /// Options of `nmt check`.
@@ -188,6 +191,7 @@ impl ProblemArgs {
             trial: keys.trial.clone(),
             test: keys.test.clone(),
             gauss: keys.gauss,
+            solver: keys.solver.clone(),
             ..self.overrides_with_mesh(mesh)
         }
     }

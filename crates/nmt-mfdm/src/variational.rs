@@ -3,7 +3,6 @@
 use crate::assembly::{Setting, dirichlet_row};
 use crate::blend::barycentric_gradients;
 use crate::error::MfdmError;
-use crate::parallel::map_chunks;
 use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::{NodeId, TriId};
@@ -13,7 +12,7 @@ use nmt_tri::Mesh;
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
     let Setting { mesh, roles, node_tris, source, fluxes, .. } = setting;
     let n_nodes = mesh.cloud().n_nodes();
-    let pieces = map_chunks(0..roles.n_unknowns, |piece| {
+    LinearSystem::of_pieces(roles, |piece| {
         let (mut sum, mut gathered) = (RowSum::new(n_nodes), Gathered::default());
         let equation = |k: usize| {
             let node = roles.node(k);
@@ -26,10 +25,8 @@ pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSyste
             let rhs = source.with_hat(mesh, &setting.source_rule, fluxes, node, around)?;
             Ok(Equation { row: sum.take(roles), rhs })
         };
-        piece.map(equation).collect::<Result<Vec<_>, MfdmError>>()
-    });
-    let equations = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(LinearSystem::of(roles.n_holes, equations.into_iter().flatten()))
+        LinearSystem::of(roles, piece.map(equation))
+    })
 }
 
 /// Gradient on `triangle` of the hat of one of its nodes.

@@ -1,6 +1,7 @@
 //! One report model, rendered as JSON or text.
 
 mod common;
+mod linear;
 mod model;
 mod singular;
 mod stars;
@@ -9,6 +10,7 @@ mod thickness;
 mod warnings;
 
 pub use common::CommonEdgeReport;
+pub use linear::LinearSolverReport;
 pub use model::{
     CensusReport, HoleReport, PointReport, QualityReport, Report, Seconds, SolutionReport, SubdomainReport, Totals,
 };

@@ -3,7 +3,7 @@
 use super::error::{Place, Source};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
-use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, Solver, StarChoice, Test, Trial};
 use nmt_tri::Elimination;
 
 /// A sound problem: every value within its limits, every outline closed, simple and in its place.
@@ -136,6 +136,8 @@ pub struct SolveSettings {
     pub test: Test,
     /// Its Gauss points a triangle; by default the order's own.
     pub gauss: Option<usize>,
+    /// Linear solver.
+    pub solver: Solver,
     /// Seed of the randomisation.
     pub seed: u64,
     /// Where `star` is given.
@@ -155,6 +157,7 @@ impl Default for SolveSettings {
             trial: Trial::default(),
             test: Test::default(),
             gauss: None,
+            solver: Solver::default(),
             seed: nmt_cloud::DEFAULT_SEED,
             star_place: None,
         }
@@ -173,6 +176,7 @@ impl SolveSettings {
             trial: self.trial,
             test: self.test,
             gauss: self.gauss,
+            solver: self.solver,
         }
     }
 }
@@ -204,6 +208,8 @@ pub struct Overrides {
     pub test: Option<String>,
     /// `--gauss`.
     pub gauss: Option<i64>,
+    /// `--solver`.
+    pub solver: Option<String>,
     /// `--seed`.
     pub seed: Option<u64>,
     /// `--method`.

@@ -3,6 +3,7 @@
 use crate::pipeline::{CloudPart, MeshPart, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
+use crate::report::linear::LinearSolverReport;
 use crate::report::singular::singular_vertices;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::warnings;
@@ -197,6 +198,8 @@ pub struct SolutionReport {
     pub tau_singular_at: Vec<Point>,
     /// ‖b − Ax‖/‖b‖.
     pub linear_residual: f64,
+    /// How the linear system was solved.
+    pub linear_solver: LinearSolverReport,
     /// What became of the stars; absent for finite elements, which have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stars: Option<StarsReport>,
@@ -420,7 +423,8 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         tau_max: solution.tau_max.value,
         tau_max_at: solution.tau_max.at,
         tau_singular_at: singular_vertices(&part.section),
-        linear_residual: solution.linear_residual,
+        linear_residual: solution.linear.residual,
+        linear_solver: LinearSolverReport::of(&solution.linear),
         stars: StarsReport::of(params, &solution.stars),
     };
     let zero = Some(0.0);

@@ -131,7 +131,7 @@ impl<U: Fn(i32) -> String> Text<U> {
         if let Some(stars) = &s.stars {
             self.stars(stars);
         }
-        self.row("linear residual", format!("{:.1e}", s.linear_residual));
+        self.row("linear solver", s.linear_solver.line(s.linear_residual));
         for hole in &s.holes {
             let label = format!("hole \"{}\"", hole.name);
             self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));

@@ -77,6 +77,12 @@ pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
     let mut warnings = Vec::new();
     let lowered = |n: usize| counted(n, "node", "nodes");
     let params = &solved.params;
+    if solution.linear.fell_back {
+        warnings.push(format!(
+            "subdomain \"{name}\": the iterative solver did not converge, and the direct one took over, which takes more \
+             time and memory; solver = \"direct\" spares the attempt"
+        ));
+    }
     if (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Mwls, Test::Trial) {
         warnings.push(format!(
             "subdomain \"{name}\": trial = \"mwls\" with test = \"trial\", the paper's form, does not converge on irregular \
