@@ -15,7 +15,7 @@ pub enum Solver {
 /// [`Solver::Auto`] iterates above this many unknowns.
 ///
 /// The iteration is as fast from 10⁴ on and takes less memory everywhere; the factorisation leaves a residual of rounding
-/// alone, and up to here takes half a second and 250 MB at most (order 2; docs/adr/0006-iterative-solver.md).
+/// alone, and up to here takes half a second and 250 MB at most (order 2; docs/adr/0004-iterative-solver.md).
 pub const DIRECT_MAX_UNKNOWNS: usize = 30_000;
 
 impl Solver {
