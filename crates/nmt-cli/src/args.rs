@@ -99,6 +99,9 @@ pub struct SolveKeys {
     /// Its exact solution u(x, y), for the errors
     #[arg(long, value_name = "U", allow_hyphen_values = true)]
     pub exact: Option<String>,
+    /// Linear solver: auto, direct, or iterative (multigrid; auto takes it for large systems)
+    #[arg(long)]
+    pub solver: Option<String>,
 }
 
 /// Options of `nmt check`.
@@ -236,6 +239,7 @@ impl ProblemArgs {
             source: keys.source.clone(),
             boundary: keys.boundary.clone(),
             exact: keys.exact.clone(),
+            solver: keys.solver.clone(),
             ..self.overrides_with_mesh(mesh)
         }
     }

@@ -342,7 +342,7 @@ fn common_edges_are_reported_where_there_are_several_subdomains() {
 fn the_report_as_text_reads_well() {
     let output = nmt(&["solve", &problem("paper-1.toml"), "--nodes", "9,9", "--at", "0.5,0.5", "--at", "9,9"]);
     // The residual is rounding: its digits are nobody's business.
-    let is_rounding = |line: &&str| line.trim_start().starts_with("linear residual");
+    let is_rounding = |line: &&str| line.trim_start().starts_with("linear solver");
     let lasting: Vec<&str> =
         std::str::from_utf8(&output.stdout).expect("UTF-8").lines().filter(|l| !is_rounding(l)).collect();
     insta::assert_snapshot!(lasting.join("\n"));

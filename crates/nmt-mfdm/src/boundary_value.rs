@@ -12,7 +12,7 @@ use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
 use crate::solve::Stage;
-use crate::solver::direct;
+use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
 use crate::stencils::{StarParams, StarReport, Stencils};
@@ -42,13 +42,13 @@ pub(crate) struct Solved {
     /// Of each hole with a circulation.
     pub constants: Vec<f64>,
     pub field: NodalPolynomials,
-    pub residual: f64,
+    pub linear: LinearSolve,
     pub unknowns: usize,
     pub stars: StarReport,
     pub diagnostics: Vec<StarDiagnostics>,
 }
 
-/// Solves a problem by the direct solver and recovers the field.
+/// Solves a problem and recovers the field.
 ///
 /// # Errors
 /// [`MfdmError`] where a parameter is out of range, a star cannot carry its polynomial, or the system is singular.
@@ -92,9 +92,9 @@ pub(crate) fn solve_discrete(
         (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Blended, Test::Hat);
     let mended = if hats_on_blends && interpolates {
         let weak = WeakForm::blended(mesh, &stencils, fluxes, &rule);
-        let mut equations = variational::equations(&frame.with(&stencils), &weak)?;
-        mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut equations)?;
-        Some(equations)
+        let mut system = variational::assemble(&frame.with(&stencils), &weak)?;
+        mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut system)?;
+        Some(system)
     } else {
         None
     };
@@ -113,21 +113,25 @@ pub(crate) fn solve_discrete(
         Formulation::Local | Formulation::Fem => WeakForm::blended(mesh, &stencils, fluxes, &rule),
     };
     let system = match (mended, params.formulation, params.test) {
-        (Some(equations), _, _) => LinearSystem::of(roles.n_holes, equations.into_iter()),
+        (Some(system), _, _) => system,
         (None, Formulation::Local, _) => local::assemble(&setting)?,
         (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
         (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
-            LinearSystem::of(roles.n_holes, variational::equations(&setting, &weak)?.into_iter())
+            variational::assemble(&setting, &weak)?
         }
     };
     let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
     drop(weak);
+    // Rows are the larger part of what is held; only smoothing needs them again.
+    let stencils = (!interpolates).then_some(stencils);
     ended(Stage::Assemble);
 
-    let Nodal { values, constants, residual } = solve_system(&system, mesh.xy(), &equations, &roles)?;
+    let Nodal { values, constants, linear } = solve_system(&system, mesh.xy(), &equations, &roles, params.solver)?;
     drop(system);
-    let values = if interpolates { values } else { smoothed(&stencils, values) };
-    drop(stencils);
+    let values = match stencils {
+        Some(stencils) => smoothed(&stencils, values),
+        None => values,
+    };
     ended(Stage::Solve);
 
     let field = if params.formulation == Formulation::Fem {
@@ -138,7 +142,7 @@ pub(crate) fn solve_discrete(
             StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
         NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?
     };
-    Ok(Solved { values, constants, field, residual, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
+    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.
@@ -154,7 +158,7 @@ fn smoothed(stencils: &Stencils, parameters: Vec<f64>) -> Vec<f64> {
 struct Nodal {
     values: Vec<f64>,
     constants: Vec<f64>,
-    residual: f64,
+    linear: LinearSolve,
 }
 
 /// F = F_0 + Σ c_k F_k with one factorisation; the holes' equations give the c_k.
@@ -163,6 +167,7 @@ fn solve_system(
     xy: &[Point],
     equations: &[Equation],
     roles: &Roles,
+    choice: Solver,
 ) -> Result<Nodal, MfdmError> {
     let mut right_sides = vec![system.rhs.clone()];
     for column in &system.hole_columns {
@@ -170,7 +175,7 @@ fn solve_system(
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
         right_sides.push(b);
     }
-    let direct::Solutions { x, residual } = direct::solve(system, &roles.places(xy), &right_sides)?;
+    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };
@@ -191,5 +196,5 @@ fn solve_system(
             x[0][k as usize] + parts.sum::<f64>()
         }
     };
-    Ok(Nodal { values: (0..xy.len()).map(value).collect(), constants, residual })
+    Ok(Nodal { values: (0..xy.len()).map(value).collect(), constants, linear: how })
 }

@@ -43,20 +43,16 @@ pub(crate) fn assemble(setting: &Setting, space: TrialSpace, rule: &Rule) -> Res
         }
     }
     let mut sum = RowSum::new(n_nodes);
-    let mut equations = Vec::with_capacity(roles.n_unknowns);
-    for k in 0..roles.n_unknowns {
+    let equation = |k: usize| {
         let node = roles.node(k);
-        let equation = match dirichlet_row(setting, node, &mut sum)? {
-            Some(equation) => equation,
-            None => {
-                let row = std::mem::take(&mut rows[node.index()]);
-                row.entries.iter().for_each(|&(other, value)| sum.add(other, value));
-                Equation { row: sum.take(roles), rhs: row.load }
-            }
-        };
-        equations.push(equation);
-    }
-    Ok(LinearSystem::of(roles.n_holes, equations.into_iter()))
+        if let Some(equation) = dirichlet_row(setting, node, &mut sum)? {
+            return Ok(equation);
+        }
+        let row = std::mem::take(&mut rows[node.index()]);
+        row.entries.iter().for_each(|&(other, value)| sum.add(other, value));
+        Ok(Equation { row: sum.take(roles), rhs: row.load })
+    };
+    LinearSystem::of(roles, (0..roles.n_unknowns).map(equation))
 }
 
 fn element(

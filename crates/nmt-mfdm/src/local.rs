@@ -3,7 +3,6 @@
 use crate::assembly::{Setting, dirichlet_row};
 use crate::basis::row;
 use crate::error::MfdmError;
-use crate::parallel::map_chunks;
 use crate::stencils::Stencils;
 use crate::system::{Equation, LinearSystem, Roles, RowSum, SplitRow};
 use nmt_geom::NodeId;
@@ -12,7 +11,7 @@ use nmt_geom::NodeId;
 /// radius to the power of its derivatives, so that all rows are of one size whatever the spacing.
 pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
     let Setting { mesh, stencils, roles, source, fluxes, .. } = setting;
-    let pieces = map_chunks(0..roles.n_unknowns, |piece| {
+    LinearSystem::of_pieces(roles, |piece| {
         // Only smoothing polynomials have Dirichlet rows, which are summed.
         let mut sum = RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
         let equation = |k: usize| {
@@ -27,10 +26,8 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
             let rhs = source.at(mesh.xy()[node.index()])? * radius * radius;
             Ok(Equation { row: laplacian_row(stencils, roles, node), rhs })
         };
-        piece.map(equation).collect::<Result<Vec<_>, MfdmError>>()
-    });
-    let equations = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(LinearSystem::of(roles.n_holes, equations.into_iter().flatten()))
+        LinearSystem::of(roles, piece.map(equation))
+    })
 }
 
 fn laplacian_row(stencils: &Stencils, roles: &Roles, node: NodeId) -> SplitRow {

@@ -12,7 +12,7 @@ use crate::error::MfdmError;
 use crate::gauss::Rule;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
-use crate::system::{Equation, Role};
+use crate::system::{LinearSystem, Role};
 use crate::variational::{EquationMaker, hat_energy};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
@@ -33,10 +33,10 @@ pub(crate) fn mend(
     around: (&Surroundings, &Nearest),
     rule: &Rule,
     stencils: &mut Stencils,
-    equations: &mut [Equation],
+    system: &mut LinearSystem,
 ) -> Result<(), MfdmError> {
     for _ in 0..ROUNDS {
-        let soft = soft_nodes(frame, equations);
+        let soft = soft_nodes(frame, system);
         if soft.is_empty() {
             break;
         }
@@ -44,21 +44,20 @@ pub(crate) fn mend(
         let setting: Setting = frame.with(stencils);
         let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
         let mut maker = EquationMaker::new(&setting, &weak);
-        for k in touched(frame, &soft) {
-            equations[k] = maker.of(k)?;
-        }
+        let anew = touched(frame, &soft).into_iter().map(|k| Ok((k, maker.of(k)?)));
+        system.replace(&anew.collect::<Result<Vec<_>, MfdmError>>()?);
     }
     Ok(())
 }
 
 /// The nodes whose own coefficient is below [`SOFT`] of what linear elements have, ascending.
-fn soft_nodes(frame: Frame, equations: &[Equation]) -> Vec<NodeId> {
-    let is_soft = |&(k, equation): &(usize, &Equation)| {
-        let row = &equation.row.unknowns;
-        let own = row.binary_search_by_key(&(k as u32), |entry| entry.0).map_or(0.0, |entry| row[entry].1);
+fn soft_nodes(frame: Frame, system: &LinearSystem) -> Vec<NodeId> {
+    let is_soft = |&k: &usize| {
+        let row = system.matrix.row(k);
+        let own = row.columns.binary_search(&(k as u32)).map_or(0.0, |entry| row.values[entry]);
         own < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k))
     };
-    equations.iter().enumerate().filter(is_soft).map(|(k, _)| frame.roles.node(k)).collect()
+    (0..system.n()).filter(is_soft).map(|k| frame.roles.node(k)).collect()
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.

@@ -1,4 +1,7 @@
 //! One function over an index range, on all cores where the feature `parallel` is on; results in index order.
+//!
+//! Pieces have a size of their own, whatever the number of threads, and sums are taken over them in order: the same bits
+//! on one core and on sixty-four.
 
 use std::ops::Range;
 
@@ -7,15 +10,52 @@ const CHUNK: usize = 512;
 
 /// `work` on consecutive pieces of `range`, results in order whatever the number of threads.
 pub(crate) fn map_chunks<T: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> T + Sync + Send) -> Vec<T> {
-    let pieces = range.len().div_ceil(CHUNK);
-    let piece = |k: usize| range.start + k * CHUNK..(range.start + (k + 1) * CHUNK).min(range.end);
+    map_pieces(range, CHUNK, work)
+}
+
+/// [`map_chunks`] on pieces of `size`.
+pub(crate) fn map_pieces<T: Send>(
+    range: Range<usize>,
+    size: usize,
+    work: impl Fn(Range<usize>) -> T + Sync + Send,
+) -> Vec<T> {
+    let pieces = range.len().div_ceil(size);
+    let piece = |k: usize| range.start + k * size..(range.start + (k + 1) * size).min(range.end);
     #[cfg(feature = "parallel")]
-    {
+    if pieces > 1 {
         use rayon::prelude::*;
-        (0..pieces).into_par_iter().map(|k| work(piece(k))).collect()
+        return (0..pieces).into_par_iter().map(|k| work(piece(k))).collect();
     }
-    #[cfg(not(feature = "parallel"))]
-    {
-        (0..pieces).map(|k| work(piece(k))).collect()
+    (0..pieces).map(|k| work(piece(k))).collect()
+}
+
+/// Pieces that are held at a time by [`take_pieces`].
+const BATCH: usize = 16;
+
+/// [`map_pieces`] whose results are taken in order, a few at a time: for results as large as memory allows.
+pub(crate) fn take_pieces<T: Send>(
+    range: Range<usize>,
+    size: usize,
+    work: impl Fn(Range<usize>) -> T + Sync + Send,
+    mut take: impl FnMut(T),
+) {
+    for first in range.clone().step_by(BATCH * size) {
+        let batch = first..(first + BATCH * size).min(range.end);
+        map_pieces(batch, size, &work).into_iter().for_each(&mut take);
     }
+}
+
+/// A size of pieces for work whose every piece costs as much as the whole range has elements: the sum stays O(n).
+pub(crate) fn large_pieces(n: usize) -> usize {
+    CHUNK.max(n.div_ceil(8 * BATCH))
+}
+
+/// `work` on consecutive pieces of `out`, of `size`, each with the index of its first element.
+pub(crate) fn fill_pieces<T: Send>(out: &mut [T], size: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
+    #[cfg(feature = "parallel")]
+    if out.len() > size {
+        use rayon::prelude::*;
+        return out.par_chunks_mut(size).enumerate().for_each(|(k, piece)| work(k * size, piece));
+    }
+    out.chunks_mut(size).enumerate().for_each(|(k, piece)| work(k * size, piece));
 }

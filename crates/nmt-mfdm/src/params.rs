@@ -4,6 +4,7 @@ use crate::basis::{MAX_ORDER, n_monomials};
 use crate::error::MfdmError;
 use crate::gauss::Rule;
 use crate::problem::{Formulation, Test, Trial};
+use crate::solver::Solver;
 use crate::star::{StarChoice, default_star};
 use crate::stencils::StarParams;
 use crate::surroundings::Metric;
@@ -29,6 +30,8 @@ pub struct SolveParams {
     pub test: Test,
     /// Gauss points a triangle in the variational formulation; by default 3 for p ≤ 2, 6 for p = 3, 12 for p = 4.
     pub gauss: Option<usize>,
+    /// Linear solver; [`Solver::Auto`] by default.
+    pub solver: Solver,
 }
 
 impl Default for SolveParams {
@@ -42,6 +45,7 @@ impl Default for SolveParams {
             trial: Trial::Blended,
             test: Test::Hat,
             gauss: None,
+            solver: Solver::Auto,
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::parallel::map_chunks;
 use crate::params::SolveParams;
 use crate::post::residuals_against;
 use crate::solve::Stage;
+use crate::solver::LinearSolve;
 use crate::source::Source;
 use crate::stencils::StarReport;
 use crate::system::NodeCondition;
@@ -39,8 +40,8 @@ pub struct PoissonSolution {
     pub field: NodalPolynomials,
     /// Number of unknowns.
     pub unknowns: usize,
-    /// ‖b − Ax‖/‖b‖.
-    pub linear_residual: f64,
+    /// How the linear system was solved.
+    pub linear: LinearSolve,
     /// What became of the stars of the equations.
     pub stars: StarReport,
     /// The star of each node in the equations.
@@ -117,7 +118,7 @@ pub fn solve_poisson_observed(
         u: solved.values,
         field: solved.field,
         unknowns: solved.unknowns,
-        linear_residual: solved.residual,
+        linear: solved.linear,
         stars: solved.stars,
         star_diagnostics: solved.diagnostics,
     })

@@ -4,6 +4,7 @@ use crate::blend::{FieldValue, NodalPolynomials};
 use crate::diagnostics::StarDiagnostics;
 use crate::post::{Extreme, Stress};
 use crate::problem::HoleCondition;
+use crate::solver::LinearSolve;
 use crate::stencils::StarReport;
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, TriangleIndex};
@@ -35,8 +36,8 @@ pub struct TorsionSolution {
     pub tau_max: Extreme,
     /// Interior nodes + holes under circulation.
     pub unknowns: usize,
-    /// ‖b − Ax‖/‖b‖, the largest of all right sides.
-    pub linear_residual: f64,
+    /// How the linear system was solved.
+    pub linear: LinearSolve,
     /// What became of the stars of the equations.
     pub stars: StarReport,
     /// What became of the stars of the recovery.

@@ -97,7 +97,7 @@ fn results(problem: &TorsionProblem, mesh: &Mesh, solved: Solved) -> TorsionSolu
         f_max: extremes.f_max,
         tau_max: extremes.tau_max,
         unknowns: solved.unknowns,
-        linear_residual: solved.residual,
+        linear: solved.linear,
         stars: solved.stars,
         recovery_stars: field.report(),
         star_diagnostics: solved.diagnostics,

@@ -3,13 +3,16 @@
 use crate::basis::n_monomials;
 use crate::error::MfdmError;
 use crate::mwls::Mwls;
-use crate::parallel::map_chunks;
+use crate::parallel::take_pieces;
 use crate::repair::{Demand, StarOutcome, sound_star};
 use crate::star::{StarChoice, StarFinder};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use std::ops::Range;
+
+/// Stars per piece of work.
+const PIECE: usize = 1024;
 
 /// Order, size and choice of stars.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +122,7 @@ impl Stencils {
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
         let metric = surroundings.metric();
         let first = range.start;
-        let pieces = map_chunks(range, |piece| {
+        let part = |piece: Range<usize>| {
             let mut finder = StarFinder::new(surroundings, nearest, params.choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
             let mut part = Self::empty(params, metric, piece.start);
@@ -131,9 +134,9 @@ impl Stencils {
                 part.push(&star, &mut mwls, outcome);
             }
             part
-        });
+        };
         let mut all = Self::empty(params, metric, first);
-        for part in pieces {
+        take_pieces(range, PIECE, part, |part: Self| {
             let offset = all.nodes.len();
             all.starts.extend(part.starts.iter().map(|start| start + offset));
             all.sizes.extend(part.sizes);
@@ -141,7 +144,7 @@ impl Stencils {
             all.rows.extend(part.rows);
             all.radii.extend(part.radii);
             all.outcomes.extend(part.outcomes);
-        }
+        });
         all
     }
 

@@ -1,9 +1,13 @@
 //! The linear system of one problem: interior nodes are unknown, boundary nodes are known, share a hole's constant, or have
 //! a flux.
 
+use crate::error::MfdmError;
+use crate::parallel::{large_pieces, take_pieces};
 use crate::problem::HoleCondition;
+use crate::solver::csr::Csr;
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
+use std::ops::Range;
 
 /// What a node's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,14 +193,10 @@ impl RowSum {
 }
 
 /// A·x = b by rows, with what the constants of the holes add: A·x + Σ c_k·B_k = b.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct LinearSystem {
-    /// First entry of each row, shape (n + 1,).
-    pub row_starts: Vec<usize>,
-    /// Column of each entry, ascending in a row.
-    pub columns: Vec<u32>,
-    /// Value of each entry.
-    pub values: Vec<f64>,
+    /// A, shape (n, n); columns ascend in a row.
+    pub matrix: Csr,
     /// b, shape (n,).
     pub rhs: Vec<f64>,
     /// (row, coefficient) of each B_k.
@@ -204,8 +204,9 @@ pub(crate) struct LinearSystem {
 }
 
 impl LinearSystem {
-    pub fn new(n_holes: usize) -> Self {
-        Self { row_starts: vec![0], hole_columns: vec![Vec::new(); n_holes], ..Self::default() }
+    /// No equation yet, in `n` unknowns.
+    pub fn new(n: usize, n_holes: usize) -> Self {
+        Self { matrix: Csr::new(n), rhs: Vec::new(), hole_columns: vec![Vec::new(); n_holes] }
     }
 
     /// Number of equations.
@@ -214,31 +215,73 @@ impl LinearSystem {
     }
 
     /// Collects equations in their order.
-    pub fn of(n_holes: usize, equations: impl Iterator<Item = Equation>) -> Self {
-        let mut system = Self::new(n_holes);
-        equations.for_each(|equation| system.push(&equation));
+    ///
+    /// # Errors
+    /// The first that an equation has.
+    pub fn of(roles: &Roles, equations: impl Iterator<Item = Result<Equation, MfdmError>>) -> Result<Self, MfdmError> {
+        let mut system = Self::new(roles.n_unknowns, roles.n_holes);
+        for equation in equations {
+            system.push(&equation?);
+        }
+        Ok(system)
+    }
+
+    /// Collects the equations of pieces of the unknowns, on all cores; few pieces are held beside the system.
+    ///
+    /// # Errors
+    /// The first that a piece has.
+    pub fn of_pieces(
+        roles: &Roles,
+        piece: impl Fn(Range<usize>) -> Result<Self, MfdmError> + Sync + Send,
+    ) -> Result<Self, MfdmError> {
+        let n = roles.n_unknowns;
+        let mut system = Ok(Self::new(n, roles.n_holes));
+        take_pieces(0..n, large_pieces(n), piece, |piece| match (&mut system, piece) {
+            (Ok(system), Ok(piece)) => system.append(piece),
+            (Ok(_), Err(error)) => system = Err(error),
+            (Err(_), _) => {}
+        });
         system
+    }
+
+    fn append(&mut self, piece: Self) {
+        let first = self.rhs.len() as u32;
+        self.matrix.append(&piece.matrix);
+        self.rhs.extend(piece.rhs);
+        for (all, own) in self.hole_columns.iter_mut().zip(piece.hole_columns) {
+            all.extend(own.into_iter().map(|(row, coefficient)| (first + row, coefficient)));
+        }
+    }
+
+    /// Puts equations in the place of those that have their numbers, which ascend.
+    pub fn replace(&mut self, anew: &[(usize, Equation)]) {
+        let mut replaced = Self::new(self.n(), self.hole_columns.len());
+        let kept = |number: &u32| anew.binary_search_by_key(&(*number as usize), |(k, _)| *k).is_err();
+        let mut next = anew.iter().peekable();
+        for k in 0..self.n() {
+            if let Some((_, equation)) = next.next_if(|(number, _)| *number == k) {
+                replaced.push(equation);
+                continue;
+            }
+            self.matrix.row(k).entries().for_each(|(column, value)| replaced.matrix.push(column as u32, value));
+            replaced.matrix.end_row();
+            replaced.rhs.push(self.rhs[k]);
+        }
+        for (column, old) in replaced.hole_columns.iter_mut().zip(&self.hole_columns) {
+            column.extend(old.iter().filter(|(number, _)| kept(number)));
+            column.sort_unstable_by_key(|(number, _)| *number);
+        }
+        *self = replaced;
     }
 
     /// Appends an equation.
     pub fn push(&mut self, equation: &Equation) {
         let number = self.rhs.len() as u32;
-        for &(column, value) in &equation.row.unknowns {
-            self.columns.push(column);
-            self.values.push(value);
-        }
+        let entries = equation.row.unknowns.iter();
+        entries.for_each(|&(column, value)| self.matrix.push(column, value));
+        self.matrix.end_row();
         let holes = equation.row.holes.iter();
         holes.for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
-        self.row_starts.push(self.columns.len());
         self.rhs.push(equation.rhs - equation.row.known);
-    }
-
-    /// A·x.
-    pub fn apply(&self, x: &[f64]) -> Vec<f64> {
-        let row = |r: usize| {
-            let entries = self.row_starts[r]..self.row_starts[r + 1];
-            entries.map(|e| self.values[e] * x[self.columns[e] as usize]).sum()
-        };
-        (0..self.n()).map(row).collect()
     }
 }

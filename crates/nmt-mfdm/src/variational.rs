@@ -3,20 +3,17 @@
 use crate::assembly::{Setting, dirichlet_row};
 use crate::blend::barycentric_gradients;
 use crate::error::MfdmError;
-use crate::parallel::map_chunks;
-use crate::system::{Equation, RowSum};
+use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
-pub(crate) fn equations(setting: &Setting, weak: &WeakForm) -> Result<Vec<Equation>, MfdmError> {
-    let pieces = map_chunks(0..setting.roles.n_unknowns, |piece| {
+pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
+    LinearSystem::of_pieces(setting.roles, |piece| {
         let mut maker = EquationMaker::new(setting, weak);
-        piece.map(|k| maker.of(k)).collect::<Result<Vec<_>, MfdmError>>()
-    });
-    let pieces = pieces.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(pieces.into_iter().flatten().collect())
+        LinearSystem::of(setting.roles, piece.map(|k| maker.of(k)))
+    })
 }
 
 /// Makes equations; one a thread, with room to be used again.

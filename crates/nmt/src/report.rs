@@ -2,6 +2,7 @@
 
 mod common;
 mod edges;
+mod linear;
 mod model;
 mod points;
 mod poisson;
@@ -14,6 +15,7 @@ mod warnings;
 
 pub use common::CommonEdgeReport;
 pub use edges::{EdgeReport, LoopReport};
+pub use linear::LinearSolverReport;
 pub use model::{CensusReport, HoleReport, QualityReport, Report, Seconds, SolutionReport, SubdomainReport, Totals};
 pub use points::{PointReport, PointValues};
 pub use poisson::{ErrorReport, FluxReport, PoissonReport};

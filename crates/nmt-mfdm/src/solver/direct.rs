@@ -1,10 +1,12 @@
 //! Sparse LU factorisation, and the small dense system of the holes: the only file that names faer.
 
 use crate::error::MfdmError;
+use crate::solver::MAX_RESIDUAL;
+use crate::solver::csr::Csr;
 use crate::solver::ordering::{ColumnRows, nested_dissection};
 use crate::system::LinearSystem;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::solvers::Solve as _;
+use faer::linalg::solvers::{DenseSolveCore as _, PartialPivLu, Solve as _};
 use faer::perm::PermRef;
 use faer::sparse::linalg::lu::supernodal::{
     SupernodalLu, factorize_supernodal_numeric_lu, factorize_supernodal_numeric_lu_scratch,
@@ -12,14 +14,8 @@ use faer::sparse::linalg::lu::supernodal::{
 };
 use faer::sparse::linalg::{LuError, qr};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, Par};
+use faer::{Conj, Mat, MatMut, Par};
 use nmt_geom::Point;
-
-/// Largest relative residual ‖b − Ax‖/‖b‖ that is accepted.
-///
-/// LU with one step of refinement leaves 1e-15 times the growth of the pivots; sound systems of 10⁵ unknowns came to
-/// 1e-13. Discretisation errors are 1e-7 at best.
-const MAX_RESIDUAL: f64 = 1.0e-9;
 
 /// Solutions of one system and the largest relative residual among them.
 #[derive(Clone, Debug)]
@@ -64,7 +60,7 @@ pub(crate) fn solve(system: &LinearSystem, xy: &[Point], right_sides: &[Vec<f64>
 }
 
 fn residual_vector(system: &LinearSystem, b: &[f64], x: &[f64]) -> Vec<f64> {
-    system.apply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()
+    system.matrix.apply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()
 }
 
 /// ‖b − Ax‖/‖b‖; 0 for b = 0, whose solution is 0.
@@ -104,14 +100,15 @@ impl Factors {
     fn new(system: &LinearSystem, xy: &[Point]) -> Result<Self, MfdmError> {
         let n = system.n();
         let out_of_memory = |_| MfdmError::Memory { n };
-        let ByColumns { starts, rows, values } = by_columns(system);
-        let columns = system.columns.iter().map(|&c| c as usize).collect::<Vec<_>>();
+        let by_rows = &system.matrix;
+        let ByColumns { starts, rows, values } = by_columns(by_rows);
+        let columns = by_rows.columns().iter().map(|&c| c as usize).collect::<Vec<_>>();
         let a = SparseColMatRef::new(SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows), &values);
         // The rows of A are the columns of its transpose.
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &system.row_starts, None, &columns);
-        let transpose = SparseColMatRef::new(pattern, &system.values);
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, by_rows.starts(), None, &columns);
+        let transpose = SparseColMatRef::new(pattern, by_rows.values());
 
-        let dissected = Order::new(nested_dissection(system, &ColumnRows { starts: &starts, rows: &rows }, xy));
+        let dissected = Order::new(nested_dissection(&ColumnRows { starts: &starts, rows: &rows }, xy));
         let workspace = StackReq::new::<usize>(8 * n)
             .or(factorize_supernodal_symbolic_lu_scratch::<usize>(n, n))
             .or(qr::column_counts_aat_scratch::<usize>(n, n));
@@ -192,24 +189,63 @@ struct ByColumns {
 }
 
 /// Rows are taken in order, so that each column's rows ascend.
-fn by_columns(system: &LinearSystem) -> ByColumns {
-    let n = system.n();
+fn by_columns(matrix: &Csr) -> ByColumns {
+    let n = matrix.n_rows();
     let mut starts = vec![0usize; n + 1];
-    system.columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
+    matrix.columns().iter().for_each(|&column| starts[column as usize + 1] += 1);
     (0..n).for_each(|column| starts[column + 1] += starts[column]);
     let mut next = starts.clone();
-    let mut rows = vec![0usize; system.columns.len()];
-    let mut values = vec![0.0; system.columns.len()];
+    let mut rows = vec![0usize; matrix.n_entries()];
+    let mut values = vec![0.0; matrix.n_entries()];
     for row in 0..n {
-        for entry in system.row_starts[row]..system.row_starts[row + 1] {
-            let slot = &mut next[system.columns[entry] as usize];
-            rows[*slot] = row;
-            values[*slot] = system.values[entry];
+        for (column, value) in matrix.row(row).entries() {
+            let slot = &mut next[column];
+            (rows[*slot], values[*slot]) = (row, value);
             *slot += 1;
         }
     }
     ByColumns { starts, rows, values }
 }
+
+/// A small matrix factorised densely: the coarsest level of the multigrid.
+pub(crate) struct DenseFactors {
+    n: usize,
+    lu: PartialPivLu<f64>,
+}
+
+impl DenseFactors {
+    pub fn new(matrix: &Csr) -> Self {
+        let n = matrix.n_rows();
+        let mut dense = Mat::<f64>::zeros(n, n);
+        (0..n).for_each(|i| matrix.row(i).entries().for_each(|(j, value)| dense[(i, j)] = value));
+        Self { n, lu: dense.partial_piv_lu() }
+    }
+
+    /// Number of unknowns.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
+    /// x = A⁻¹·b.
+    pub fn solve(&self, b: &[f64], x: &mut [f64]) {
+        x.copy_from_slice(b);
+        self.lu.solve_in_place(MatMut::from_column_major_slice_mut(x, self.n, 1));
+    }
+}
+
+/// The inverse of a small dense matrix by rows, shape (n, n); `None` where its condition is above
+/// [`MAX_INVERSE_CONDITION`] (largest sums of rows).
+pub(crate) fn dense_inverse(n: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<f64>> {
+    let matrix = Mat::from_fn(n, n, entry);
+    let inverse = matrix.partial_piv_lu().inverse();
+    let largest_row = |m: &Mat<f64>| (0..n).map(|i| (0..n).map(|j| m[(i, j)].abs()).sum::<f64>()).fold(0.0, f64::max);
+    let condition = largest_row(&matrix) * largest_row(&inverse);
+    let by_rows = (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|at| inverse[at]);
+    (condition <= MAX_INVERSE_CONDITION).then(|| by_rows.collect())
+}
+
+/// Beyond it an inverse serves no more: those of sound patches have 10 to 100.
+const MAX_INVERSE_CONDITION: f64 = 1.0e4;
 
 /// Solves a small dense system given by rows.
 ///
@@ -230,7 +266,7 @@ mod tests {
     use crate::system::{Equation, Role, SplitRow};
 
     fn tridiagonal(n: u32) -> LinearSystem {
-        let mut system = LinearSystem::new(0);
+        let mut system = LinearSystem::new(n as usize, 0);
         for i in 0..n {
             let mut row = SplitRow::default();
             if i > 0 {
@@ -255,7 +291,7 @@ mod tests {
         let other: Vec<f64> = (0..200).map(|i| f64::from(i % 7) - 3.0).collect();
         let solutions = solve(&system, &line(200), &[system.rhs.clone(), other.clone(), vec![0.0; 200]])?;
         for (x, b) in solutions.x.iter().zip([&system.rhs, &other]) {
-            let worst = system.apply(x).iter().zip(b).map(|(ax, b)| (ax - b).abs()).fold(0.0, f64::max);
+            let worst = system.matrix.apply(x).iter().zip(b).map(|(ax, b)| (ax - b).abs()).fold(0.0, f64::max);
             assert!(worst < 1e-12); // rounding of numbers up to 200
         }
         assert!(solutions.x[2].iter().all(|v| *v == 0.0));
@@ -265,7 +301,7 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_is_an_error_not_a_number() {
-        let mut system = LinearSystem::new(0);
+        let mut system = LinearSystem::new(2, 0);
         for _ in 0..2 {
             let mut row = SplitRow::default();
             row.add(Role::Unknown(0), 1.0);

@@ -3,7 +3,6 @@
 //! Rows of the variational form have 25 entries, and LU with pivoting fills what AᵀA would. A minimum-degree ordering of
 //! such columns takes as long as the factorisation; cutting the cloud in halves takes a tenth of that and fills less.
 
-use crate::system::LinearSystem;
 use nmt_geom::{Bbox, Point};
 
 /// Parts of at most this many unknowns are not cut any more.
@@ -21,8 +20,8 @@ pub(crate) struct ColumnRows<'a> {
 ///
 /// Each part is cut in the middle across its longer side; the columns of the first half that share a row with the second
 /// half come after both, so that the halves do not meet in AᵀA. `xy` are the places of the unknowns, shape (n, 2).
-pub(crate) fn nested_dissection(system: &LinearSystem, columns: &ColumnRows, xy: &[Point]) -> Vec<usize> {
-    let n = system.n();
+pub(crate) fn nested_dissection(columns: &ColumnRows, xy: &[Point]) -> Vec<usize> {
+    let n = xy.len();
     let mut order: Vec<usize> = (0..n).collect();
     let mut reached = vec![0u32; n]; // by row: the number of the cut whose second half it reaches
     let mut cut = 0;

@@ -8,4 +8,5 @@ mod invariance;
 mod poisson;
 mod problem;
 mod sections;
+mod solvers;
 mod stars;

@@ -62,7 +62,7 @@ proptest! {
             let params = SolveParams { formulation, ..SolveParams::default() };
             match solve(&TorsionProblem::default(), &mesh, &params) {
                 Ok(solution) => {
-                    prop_assert!(solution.linear_residual < 1e-9);
+                    prop_assert!(solution.linear.residual < 1e-9);
                     prop_assert!(solution.f.iter().all(|f| f.is_finite()) && solution.j.is_finite());
                 }
                 Err(error) => prop_assert!(!error.to_string().is_empty()),

@@ -4,7 +4,7 @@ use super::schema::MeshMethod;
 use super::suggest;
 use nmt_cloud::{BYTES_PER_GRID_POINT, ClearanceUnit, MAX_GRID_POINTS};
 use nmt_curve::Division;
-use nmt_mfdm::{Formulation, GAUSS_POINTS, HoleCondition, MAX_ORDER, StarChoice, Test, Trial, n_monomials};
+use nmt_mfdm::{Formulation, GAUSS_POINTS, HoleCondition, MAX_ORDER, Solver, StarChoice, Test, Trial, n_monomials};
 use nmt_tri::Elimination;
 
 /// Lengths, moduli, twists and torques are at most this, whatever their unit.
@@ -219,6 +219,11 @@ pub(super) fn trial(word: &str) -> Result<Trial, Refusal> {
 /// Test functions by their word.
 pub(super) fn test(word: &str) -> Result<Test, Refusal> {
     choice("test", word, &Test::ALL.map(|t| (t.name(), t)))
+}
+
+/// A linear solver by its word.
+pub(super) fn solver(word: &str) -> Result<Solver, Refusal> {
+    choice("solver", word, &Solver::ALL.map(|s| (s.name(), s)))
 }
 
 /// A condition on holes by its word.

@@ -4,7 +4,7 @@ use super::error::{Place, Source};
 use super::formula::Formula;
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
-use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, Solver, StarChoice, Test, Trial};
 use nmt_tri::Elimination;
 
 /// A sound problem: every value within its limits, every outline closed, simple and in its place.
@@ -140,6 +140,8 @@ pub struct SolveSettings {
     pub test: Test,
     /// Its Gauss points a triangle; by default the order's own.
     pub gauss: Option<usize>,
+    /// Linear solver.
+    pub solver: Solver,
     /// Seed of the randomisation.
     pub seed: u64,
     /// Where `star` is given.
@@ -172,6 +174,7 @@ impl Default for SolveSettings {
             trial: Trial::default(),
             test: Test::default(),
             gauss: None,
+            solver: Solver::default(),
             seed: nmt_cloud::DEFAULT_SEED,
             star_place: None,
             poisson: None,
@@ -191,6 +194,7 @@ impl SolveSettings {
             trial: self.trial,
             test: self.test,
             gauss: self.gauss,
+            solver: self.solver,
         }
     }
 }
@@ -228,6 +232,8 @@ pub struct Overrides {
     pub boundary: Option<String>,
     /// `--exact`, likewise.
     pub exact: Option<String>,
+    /// `--solver`.
+    pub solver: Option<String>,
     /// `--seed`.
     pub seed: Option<u64>,
     /// `--method`.

@@ -119,6 +119,7 @@ impl SolveDraft {
         settings.stars = word(reader, &table, "stars", "\"balanced\"", limits::stars).unwrap_or_default();
         settings.trial = word(reader, &table, "trial", "\"blended\"", limits::trial).unwrap_or_default();
         settings.test = word(reader, &table, "test", "\"hat\"", limits::test).unwrap_or_default();
+        settings.solver = word(reader, &table, "solver", "\"iterative\"", limits::solver).unwrap_or_default();
         let [twist, torque] = ["twist", "torque"].map(|key| {
             let value = table.get(key)?;
             reader.number(ITEM, key, value, "1.0", limits::load)
@@ -198,6 +199,9 @@ impl SolveDraft {
         }
         if let Some(points) = options.gauss {
             settings.gauss = option(faults, &known(Key::Gauss, &points), limits::gauss(points.into()));
+        }
+        if let Some(word) = &options.solver {
+            settings.solver = option(faults, &place("solver", word), limits::solver(word)).unwrap_or_default();
         }
         if let Some(seed) = options.seed {
             settings.seed = seed;

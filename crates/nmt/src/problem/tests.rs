@@ -2,7 +2,7 @@
 
 use super::*;
 use nmt_curve::Curve;
-use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, Test, Trial};
+use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, Solver, StarChoice, Test, Trial};
 use nmt_tri::Elimination;
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
@@ -225,7 +225,8 @@ fn square_with(solve: &str) -> String {
 #[test]
 fn how_it_is_solved_is_read_from_file_and_options() {
     let text = square_with(
-        "order = 3\nstar = 22\nstars = \"balanced\"\nsmoothing = 0.25\ntrial = \"mwls\"\ntest = \"trial\"\ngauss = 7",
+        "order = 3\nstar = 22\nstars = \"balanced\"\nsmoothing = 0.25\ntrial = \"mwls\"\ntest = \"trial\"\ngauss = 7\n\
+         solver = \"iterative\"",
     );
     let solve = sound(&text, &Overrides::default()).solve;
     let given = SolveParams {
@@ -237,6 +238,7 @@ fn how_it_is_solved_is_read_from_file_and_options() {
         trial: Trial::Mwls,
         test: Test::Trial,
         gauss: Some(7),
+        solver: Solver::Iterative,
     };
     assert_eq!(solve.params(None), given);
     let options = Overrides {
@@ -247,6 +249,7 @@ fn how_it_is_solved_is_read_from_file_and_options() {
         trial: Some("blended".into()),
         test: Some("hat".into()),
         gauss: Some(12),
+        solver: Some("auto".into()),
         ..Overrides::default()
     };
     let expected = SolveParams { order: 1, star: Some(4), gauss: Some(12), ..SolveParams::default() };

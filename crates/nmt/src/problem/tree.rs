@@ -75,6 +75,7 @@ pub(super) const SOLVE_KEYS: &[&str] = &[
     "trial",
     "test",
     "gauss",
+    "solver",
     "seed",
     "source",
     "boundary",

@@ -4,6 +4,7 @@ use crate::pipeline::{CloudPart, MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
 use crate::report::edges::{AlongEdges, EdgeReport, LoopReport};
+use crate::report::linear::LinearSolverReport;
 use crate::report::points::{self, PointReport, PointValues};
 use crate::report::poisson::PoissonReport;
 use crate::report::singular::singular_vertices;
@@ -209,6 +210,8 @@ pub struct SolutionReport {
     pub loops: Vec<LoopReport>,
     /// ‖b − Ax‖/‖b‖.
     pub linear_residual: f64,
+    /// How the linear system was solved.
+    pub linear_solver: LinearSolverReport,
     /// What became of the stars; absent for finite elements, which have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stars: Option<StarsReport>,
@@ -454,7 +457,8 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         tau_singular_at: singular_vertices(&part.section),
         edges,
         loops,
-        linear_residual: solution.linear_residual,
+        linear_residual: solution.linear.residual,
+        linear_solver: LinearSolverReport::of(&solution.linear),
         stars: StarsReport::of(params, &solution.stars),
     };
     let zero = Some(0.0);

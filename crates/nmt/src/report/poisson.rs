@@ -2,6 +2,7 @@
 
 use crate::pipeline::{PoissonErrors, PoissonPart};
 use crate::problem::Formula;
+use crate::report::linear::LinearSolverReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use nmt_curve::{ArcTable, Curve};
 use nmt_geom::Point;
@@ -51,6 +52,8 @@ pub struct PoissonReport {
     pub errors: Option<ErrorReport>,
     /// ‖b − Ax‖/‖b‖.
     pub linear_residual: f64,
+    /// How the linear system was solved.
+    pub linear_solver: LinearSolverReport,
     /// What became of the stars; absent for finite elements, which have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stars: Option<StarsReport>,
@@ -115,7 +118,8 @@ impl PoissonReport {
             u_max: solution.u[most],
             u_max_at: part.mesh.xy()[most],
             errors: errors.as_ref().map(ErrorReport::of),
-            linear_residual: solution.linear_residual,
+            linear_residual: solution.linear.residual,
+            linear_solver: LinearSolverReport::of(&solution.linear),
             stars: StarsReport::of(params, &solution.stars),
         }
     }

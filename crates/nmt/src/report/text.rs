@@ -137,7 +137,7 @@ impl<U: Fn(i32) -> String> Text<U> {
         if let Some(stars) = &s.stars {
             self.stars(stars);
         }
-        self.row("linear residual", format!("{:.1e}", s.linear_residual));
+        self.row("linear solver", s.linear_solver.line(s.linear_residual));
         for hole in &s.holes {
             let label = format!("hole \"{}\"", hole.name);
             self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));
@@ -171,7 +171,7 @@ impl<U: Fn(i32) -> String> Text<U> {
         if let Some(stars) = &s.stars {
             self.stars(stars);
         }
-        self.row("linear residual", format!("{:.1e}", s.linear_residual));
+        self.row("linear solver", s.linear_solver.line(s.linear_residual));
         for flux in &s.fluxes {
             let integral = flux.integral.map_or(String::new(), |sum| format!(", ∫ ds = {}", number(sum)));
             self.row(&format!("flux on \"{}\"", flux.edge), format!("∂u/∂n = {}{integral}", flux.neumann));

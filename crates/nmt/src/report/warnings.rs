@@ -8,7 +8,7 @@ use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, StarChoice, StarReport, Test, Trial};
+use nmt_mfdm::{Formulation, HoleCondition, LinearSolve, Load, SolveParams, StarChoice, StarReport, Test, Trial};
 
 /// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
 /// nodes beside the boundary.
@@ -86,7 +86,10 @@ pub(super) fn of_corners(name: &str, section: &Section) -> Option<String> {
 /// Warnings of a solution of torsion, beyond those of its section.
 pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
     let SolvedPart { part, params, solution } = solved;
-    of_equations(&part.name, params, [&solution.stars, &solution.recovery_stars], ["J stays", "stresses"])
+    let stars = [&solution.stars, &solution.recovery_stars];
+    let mut warnings = of_equations(&part.name, params, stars, ["J stays", "stresses"]);
+    warnings.extend(of_linear_solve(&part.name, &solution.linear));
+    warnings
 }
 
 /// Warnings of a solution of a Poisson problem, beyond those of its section.
@@ -94,6 +97,7 @@ pub(super) fn of_poisson(solved: &PoissonPart) -> Vec<String> {
     let PoissonPart { part, params, solution, data, .. } = solved;
     let recovery = solution.field.report();
     let mut warnings = of_equations(&part.name, params, [&solution.stars, &recovery], ["u stays", "gradients"]);
+    warnings.extend(of_linear_solve(&part.name, &solution.linear));
     warnings.extend(of_boundary(solved, data.settings.boundary.is_none()));
     warnings
 }
@@ -115,6 +119,16 @@ fn of_boundary(solved: &PoissonPart, is_default: bool) -> Option<String> {
             solved.part.name,
             off(node),
             place(mesh.xy()[node])
+        )
+    })
+}
+
+/// A warning of a fall-back to the direct solver.
+fn of_linear_solve(name: &str, how: &LinearSolve) -> Option<String> {
+    how.fell_back.then(|| {
+        format!(
+            "subdomain \"{name}\": the iterative solver did not converge, and the direct one took over, which takes more \
+             time and memory; solver = \"direct\" spares the attempt"
         )
     })
 }

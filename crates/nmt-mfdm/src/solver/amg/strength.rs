@@ -1,0 +1,35 @@
+//! Which unknowns hang together strongly: the graph that aggregates are made from, and the matrix that smooths them.
+
+use crate::solver::csr::{Csr, Mirror};
+
+/// The strong part of a matrix.
+pub(crate) struct Strong {
+    /// Strong entries beside the diagonal, by row.
+    pub matrix: Csr,
+    /// The diagonal with everything weak added to it: the sums of rows stay what they were.
+    pub diagonal: Vec<f64>,
+}
+
+/// Entry (i, j) is strong where ½(|a_ij| + |a_ji|) ≥ `threshold`·(|a_ii·a_jj|)^½. O(entries).
+///
+/// The matrices are not symmetric, and their small entries are of either sign; the graph is symmetric all the same.
+pub(crate) fn strong(a: &Csr, threshold: f64) -> Strong {
+    let n = a.n_rows();
+    let scale: Vec<f64> = (0..n).map(|i| a.diagonal(i).abs().sqrt()).collect();
+    let mut strong = Strong { matrix: Csr::new(n), diagonal: Vec::with_capacity(n) };
+    let mut mirror = Mirror::new(a);
+    for i in 0..n {
+        let mut lumped = 0.0;
+        for (j, value) in a.row(i).entries() {
+            let other = mirror.of(i, j);
+            if j != i && 0.5 * (value.abs() + other.abs()) >= threshold * scale[i] * scale[j] {
+                strong.matrix.push(j as u32, value);
+            } else {
+                lumped += value;
+            }
+        }
+        strong.matrix.end_row();
+        strong.diagonal.push(lumped);
+    }
+    strong
+}

@@ -1,0 +1,278 @@
+//! Sparse matrices by rows, and their products.
+
+use crate::parallel::{fill_pieces, map_pieces};
+
+/// Rows per piece of a matrix × vector product.
+const ROWS: usize = 4096;
+
+/// Rows per piece of a matrix × matrix product: each piece has a marker as long as a row.
+const PRODUCT_ROWS: usize = 1 << 15;
+
+/// A sparse matrix by rows; columns ascend in a row.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Csr {
+    starts: Vec<usize>, // first entry of each row, shape (n_rows + 1,)
+    columns: Vec<u32>,
+    values: Vec<f64>,
+    n_columns: usize,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<'a> {
+    pub columns: &'a [u32],
+    pub values: &'a [f64],
+}
+
+impl<'a> Row<'a> {
+    /// (column, value) in order.
+    #[inline]
+    pub fn entries(self) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.columns.iter().zip(self.values).map(|(column, value)| (*column as usize, *value))
+    }
+
+    /// Row · x.
+    #[inline]
+    pub fn dot(self, x: &[f64]) -> f64 {
+        self.entries().map(|(column, value)| value * x[column]).sum()
+    }
+}
+
+/// Finds a_ji beside a_ij while rows are read in ascending order: one pass over the matrix for all.
+pub(crate) struct Mirror<'a> {
+    matrix: &'a Csr,
+    next: Vec<usize>, // entry of each row that is the first not yet passed
+}
+
+impl<'a> Mirror<'a> {
+    pub fn new(matrix: &'a Csr) -> Self {
+        Self { matrix, next: matrix.starts[..matrix.n_rows()].to_vec() }
+    }
+
+    /// a_ji, or 0; `i` must not descend from one call to the next.
+    #[inline]
+    pub fn of(&mut self, i: usize, j: usize) -> f64 {
+        let Csr { starts, columns, values, .. } = self.matrix;
+        let (next, end) = (&mut self.next[j], starts[j + 1]);
+        while *next < end && (columns[*next] as usize) < i {
+            *next += 1;
+        }
+        if *next < end && columns[*next] as usize == i { values[*next] } else { 0.0 }
+    }
+}
+
+impl Csr {
+    /// No row yet.
+    pub fn new(n_columns: usize) -> Self {
+        Self { starts: vec![0], columns: Vec::new(), values: Vec::new(), n_columns }
+    }
+
+    /// Appends an entry to the row begun.
+    #[inline]
+    pub fn push(&mut self, column: u32, value: f64) {
+        self.columns.push(column);
+        self.values.push(value);
+    }
+
+    /// Ends a row.
+    #[inline]
+    pub fn end_row(&mut self) {
+        self.starts.push(self.columns.len());
+    }
+
+    /// Pieces under one another, in order.
+    pub fn stacked(n_columns: usize, pieces: &[Self]) -> Self {
+        let n_rows: usize = pieces.iter().map(Self::n_rows).sum();
+        let n_entries = pieces.iter().map(Self::n_entries).sum();
+        let mut stacked = Self {
+            starts: Vec::with_capacity(n_rows + 1),
+            columns: Vec::with_capacity(n_entries),
+            values: Vec::with_capacity(n_entries),
+            n_columns,
+        };
+        stacked.starts.push(0);
+        pieces.iter().for_each(|piece| stacked.append(piece));
+        stacked
+    }
+
+    /// Puts another matrix of as many columns under this one.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.columns.len();
+        self.starts.extend(other.starts[1..].iter().map(|start| first + start));
+        self.columns.extend_from_slice(&other.columns);
+        self.values.extend_from_slice(&other.values);
+    }
+
+    pub fn n_rows(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub fn n_entries(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// First entry of each row, shape (n_rows + 1,).
+    pub fn starts(&self) -> &[usize] {
+        &self.starts
+    }
+
+    /// Column of each entry.
+    pub fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+
+    /// Value of each entry.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    #[inline]
+    pub fn row(&self, i: usize) -> Row<'_> {
+        let entries = self.starts[i]..self.starts[i + 1];
+        Row { columns: &self.columns[entries.clone()], values: &self.values[entries] }
+    }
+
+    /// A·x.
+    pub fn apply(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.n_rows()];
+        self.apply_to(x, &mut y);
+        y
+    }
+
+    /// y = A·x.
+    pub fn apply_to(&self, x: &[f64], y: &mut [f64]) {
+        fill_pieces(y, ROWS, |first, y| y.iter_mut().enumerate().for_each(|(k, y)| *y = self.row(first + k).dot(x)));
+    }
+
+    /// y += A·x.
+    pub fn add_to(&self, x: &[f64], y: &mut [f64]) {
+        fill_pieces(y, ROWS, |first, y| y.iter_mut().enumerate().for_each(|(k, y)| *y += self.row(first + k).dot(x)));
+    }
+
+    /// r = b − A·x.
+    pub fn residual_to(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
+        fill_pieces(r, ROWS, |first, r| {
+            r.iter_mut().enumerate().for_each(|(k, r)| *r = b[first + k] - self.row(first + k).dot(x));
+        });
+    }
+
+    /// Aᵀ.
+    pub fn transpose(&self) -> Self {
+        let mut starts = vec![0usize; self.n_columns + 1];
+        self.columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
+        (0..self.n_columns).for_each(|column| starts[column + 1] += starts[column]);
+        let mut next = starts.clone();
+        let (mut columns, mut values) = (vec![0u32; self.n_entries()], vec![0.0; self.n_entries()]);
+        // Rows are taken in order, so that the columns of the transpose ascend.
+        for i in 0..self.n_rows() {
+            for (column, value) in self.row(i).entries() {
+                let slot = &mut next[column];
+                (columns[*slot], values[*slot]) = (i as u32, value);
+                *slot += 1;
+            }
+        }
+        Self { starts, columns, values, n_columns: self.n_rows() }
+    }
+
+    /// |a_ij − a_ji| ≤ `tolerance`·(|a_ii| + |a_jj|) everywhere, an entry that is not there being 0. O(entries).
+    pub fn is_symmetric(&self, tolerance: f64) -> bool {
+        let diagonal: Vec<f64> = (0..self.n_rows()).map(|i| self.diagonal(i).abs()).collect();
+        let mut mirror = Mirror::new(self);
+        (0..self.n_rows()).all(|i| {
+            self.row(i)
+                .entries()
+                .all(|(j, value)| (value - mirror.of(i, j)).abs() <= tolerance * (diagonal[i] + diagonal[j]))
+        })
+    }
+
+    /// a_ij, or 0.
+    pub fn entry(&self, i: usize, j: u32) -> f64 {
+        let row = self.row(i);
+        row.columns.binary_search(&j).map_or(0.0, |k| row.values[k])
+    }
+
+    /// a_ii, or 0.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.entry(i, i as u32)
+    }
+
+    /// Makes every entry of the columns told a 0.
+    pub fn clear_columns(&mut self, is_told: &[bool]) {
+        let entries = self.columns.iter().zip(&mut self.values);
+        entries.filter(|(column, _)| is_told[**column as usize]).for_each(|(_, value)| *value = 0.0);
+    }
+
+    /// A·B.
+    pub fn product(&self, other: &Self) -> Self {
+        let pieces = map_pieces(0..self.n_rows(), PRODUCT_ROWS, |rows| {
+            let mut piece = Self::new(other.n_columns);
+            let mut slots = vec![u32::MAX; other.n_columns]; // of each column in the row under way
+            let mut row: Vec<(u32, f64)> = Vec::new();
+            for i in rows {
+                for (k, a) in self.row(i).entries() {
+                    for (column, b) in other.row(k).entries() {
+                        let slot = &mut slots[column];
+                        if *slot == u32::MAX {
+                            *slot = row.len() as u32;
+                            row.push((column as u32, a * b));
+                        } else {
+                            row[*slot as usize].1 += a * b;
+                        }
+                    }
+                }
+                row.iter().for_each(|(column, _)| slots[*column as usize] = u32::MAX);
+                row.sort_unstable_by_key(|(column, _)| *column);
+                row.drain(..).for_each(|(column, value)| piece.push(column, value));
+                piece.end_row();
+            }
+            piece
+        });
+        Self::stacked(other.n_columns, &pieces)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// By dense rows; zeros are left out.
+    pub(crate) fn of_dense(rows: &[Vec<f64>]) -> Csr {
+        let mut matrix = Csr::new(rows.first().map_or(0, Vec::len));
+        for row in rows {
+            let entries = row.iter().enumerate().filter(|(_, value)| **value != 0.0);
+            entries.for_each(|(column, value)| matrix.push(column as u32, *value));
+            matrix.end_row();
+        }
+        matrix
+    }
+
+    /// Deterministic, about a third of the entries 0.
+    fn scattered(n_rows: usize, n_columns: usize) -> Vec<Vec<f64>> {
+        let entry = |i: usize, j: usize| ((i * 31 + j * 17 + i * j) % 13).saturating_sub(4) as f64;
+        (0..n_rows).map(|i| (0..n_columns).map(|j| entry(i, j)).collect()).collect()
+    }
+
+    #[test]
+    fn products_and_transposes_are_those_of_dense_matrices() {
+        let (a, b) = (scattered(7, 11), scattered(11, 5));
+        let entry = |i: usize, j: usize| (0..11).map(|k| a[i][k] * b[k][j]).sum::<f64>();
+        let dense: Vec<Vec<f64>> = (0..7).map(|i| (0..5).map(|j| entry(i, j)).collect()).collect();
+        assert_eq!(of_dense(&a).product(&of_dense(&b)), of_dense(&dense)); // integers: no rounding
+        let transposed: Vec<Vec<f64>> = (0..11).map(|j| (0..7).map(|i| a[i][j]).collect()).collect();
+        assert_eq!(of_dense(&a).transpose(), of_dense(&transposed));
+        let x: Vec<f64> = (0..11).map(f64::from).collect();
+        let expected: Vec<f64> = a.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+        assert_eq!(of_dense(&a).apply(&x), expected);
+    }
+
+    #[test]
+    fn symmetry_is_seen_also_where_an_entry_has_no_mirror() {
+        let symmetric = [vec![2.0, -1.0, 0.0], vec![-1.0, 2.0, -1.0], vec![0.0, -1.0, 2.0]];
+        assert!(of_dense(&symmetric).is_symmetric(1e-12));
+        for (i, j) in [(0, 2), (2, 0), (1, 2)] {
+            let mut other = symmetric.to_vec();
+            other[i][j] += 1e-6;
+            assert!(!of_dense(&other).is_symmetric(1e-12));
+        }
+    }
+}
