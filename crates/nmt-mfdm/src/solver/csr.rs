@@ -196,10 +196,9 @@ impl Csr {
         self.entry(i, i as u32)
     }
 
-    /// Makes every entry of the columns told a 0.
-    pub fn clear_columns(&mut self, is_told: &[bool]) {
-        let entries = self.columns.iter().zip(&mut self.values);
-        entries.filter(|(column, _)| is_told[**column as usize]).for_each(|(_, value)| *value = 0.0);
+    /// Multiplies every column by its factor.
+    pub fn scale_columns(&mut self, factors: &[f64]) {
+        self.columns.iter().zip(&mut self.values).for_each(|(column, value)| *value *= factors[*column as usize]);
     }
 
     /// A·B.
