@@ -3,7 +3,7 @@
 use crate::assembly::Frame;
 use crate::blend::NodalPolynomials;
 use crate::circulation::hole_equations;
-use crate::diagnostics::{StarDiagnostics, diagnose};
+use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
@@ -22,6 +22,7 @@ use crate::weak::WeakForm;
 use crate::{galerkin, local, variational};
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, NodeTris};
+use std::collections::BTreeMap;
 
 /// Gauss points that integrate a source that is not constant: exact to degree 4 for orders 1 and 2, to degree 6 above.
 const SOURCE_POINTS: [usize; 2] = [6, 12];
@@ -45,7 +46,7 @@ pub(crate) struct Solved {
     pub linear: LinearSolve,
     pub unknowns: usize,
     pub stars: StarReport,
-    pub diagnostics: Vec<StarDiagnostics>,
+    pub used_stars: UsedStars,
 }
 
 /// Solves a problem and recovers the field.
@@ -90,15 +91,16 @@ pub(crate) fn solve_discrete(
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
     let hats_on_blends =
         (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Blended, Test::Hat);
+    let mut larger = BTreeMap::new();
     let mended = if hats_on_blends && interpolates {
         let weak = WeakForm::blended(mesh, &stencils, fluxes, &rule);
         let mut system = variational::assemble(&frame.with(&stencils), &weak)?;
-        mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut system)?;
+        larger = mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut system)?;
         Some(system)
     } else {
         None
     };
-    let (stars, diagnostics) = (stencils.report(), diagnose(&surroundings, &stencils));
+    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
     let setting = frame.with(&stencils);
     let space = TrialSpace {
         kind: params.trial,
@@ -142,7 +144,7 @@ pub(crate) fn solve_discrete(
             StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
         NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?
     };
-    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
+    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.

@@ -233,7 +233,7 @@ fn one_star_opened_up_is_the_one_that_the_equations_use() {
     {
         let solution = solve(&TorsionProblem::default(), &mesh, &params).expect("a sound problem");
         let mut hidden = 0;
-        for (node, used) in solution.star_diagnostics.iter().enumerate() {
+        for (node, used) in solution.used_stars.diagnostics(&mesh).iter().enumerate() {
             let star = NodeStar::of(mesh.cloud(), &params, NodeId::of(node)).expect("sound parameters");
             let star = star.expect("meshless formulations have stars");
             let size = (star.members.len(), star.outcome.order, star.radius, star.outcome.condition);
