@@ -2,10 +2,11 @@
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::parallel::map_chunks;
+use crate::slopes::gradient_of_monomial;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
 use nmt_geom::NodeId;
-use nmt_geom::point::sub;
+use nmt_geom::point::{dot, sub};
 
 /// The star of one node in the equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +44,7 @@ pub(crate) fn diagnose(surroundings: &Surroundings, stencils: &Stencils) -> Vec<
 
 fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) -> StarDiagnostics {
     let (stencil, outcome) = (stencils.of(node), stencils.outcome(node));
+    let slopes = stencils.known(node).slopes;
     let places = surroundings.stretched();
     let centre = places[node.index()];
     let n = n_monomials(outcome.order);
@@ -52,6 +54,10 @@ fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) 
         let offset = sub(places[other.index()], centre).map(|v| v / stencil.radius);
         let mut basis = [0.0; MAX_MONOMIALS];
         monomials(offset, outcome.order, &mut basis);
+        // The rows hold for values less the known slope.
+        for m in [row(1, 0), row(0, 1)] {
+            basis[m] -= dot(slopes.known_part(gradient_of_monomial(m)), offset);
+        }
         for m in stencil.first_row()..n {
             let coefficient = stencil.row(m)[position];
             (0..n).for_each(|k| errors[m][k] += coefficient * basis[k]);
@@ -60,7 +66,9 @@ fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) 
     let mut residual = 0.0f64;
     for (m, row) in errors.iter().enumerate().take(n).skip(stencil.first_row()) {
         for (k, value) in row.iter().enumerate().take(n) {
-            residual = residual.max((value - if m == k { 1.0 } else { 0.0 }).abs());
+            let known = slopes.known_part(gradient_of_monomial(k));
+            let exact = f64::from(u8::from(m == k)) - dot(known, gradient_of_monomial(m));
+            residual = residual.max((value - exact).abs());
         }
     }
     let own = stencil.nodes.iter().position(|other| *other == node);
