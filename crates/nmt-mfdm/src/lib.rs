@@ -45,6 +45,7 @@ mod post;
 mod problem;
 mod repair;
 mod shapes;
+mod slopes;
 mod solution;
 mod solve;
 mod solver;
