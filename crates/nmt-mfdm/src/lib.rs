@@ -34,6 +34,9 @@ pub mod exact;
 mod flux;
 mod galerkin;
 mod gauss;
+#[cfg(feature = "kernels")]
+#[doc(hidden)]
+pub mod kernels;
 mod local;
 mod mend;
 mod mwls;
