@@ -51,6 +51,7 @@ mod solve;
 mod solver;
 mod source;
 mod star;
+mod steady;
 mod stencils;
 mod surroundings;
 mod system;
