@@ -15,6 +15,7 @@ use crate::solve::Stage;
 use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
+use crate::steady::steady;
 use crate::stencils::{StarParams, StarReport, Stencils};
 use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
@@ -101,6 +102,7 @@ pub(crate) fn solve_discrete(
         let weak = WeakForm::blended(mesh, &stencils, fluxes, &rule);
         let mut system = variational::assemble(&frame.with(&stencils), &weak)?;
         larger = mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut system)?;
+        steady(frame, (&surroundings, &nearest), params.order, &mut system);
         Some(system)
     } else {
         None

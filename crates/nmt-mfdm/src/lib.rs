@@ -54,6 +54,7 @@ mod solve;
 mod solver;
 mod source;
 mod star;
+mod steady;
 mod stencils;
 mod surroundings;
 mod system;

@@ -111,6 +111,13 @@ impl Roles {
         self.conditions.get(node.index()).copied()
     }
 
+    /// A functional of the nodal values, given by ascending node.
+    pub fn split(&self, coefficients: &[(NodeId, f64)]) -> SplitRow {
+        let mut row = SplitRow::default();
+        coefficients.iter().for_each(|&(node, coefficient)| row.add(self.of(node), coefficient));
+        row
+    }
+
     /// Places of the unknowns, shape (n_unknowns, 2).
     pub fn places(&self, xy: &[Point]) -> Vec<Point> {
         (0..self.n_unknowns).map(|k| xy[self.node(k).index()]).collect()
@@ -129,6 +136,12 @@ pub(crate) struct SplitRow {
 }
 
 impl SplitRow {
+    /// This functional times a factor.
+    pub fn times(&self, factor: f64) -> Self {
+        let scaled = |parts: &[(u32, f64)]| parts.iter().map(|&(k, c)| (k, c * factor)).collect();
+        Self { unknowns: scaled(&self.unknowns), holes: scaled(&self.holes), known: self.known * factor }
+    }
+
     /// Adds `coefficient` times the value of a node of that role; unknowns must come in ascending order.
     #[inline]
     pub fn add(&mut self, role: Role, coefficient: f64) {
@@ -269,6 +282,38 @@ impl LinearSystem {
             }
             column.sort_unstable_by_key(|(number, _)| *number);
         }
+    }
+
+    /// Adds functionals to the left sides of the equations that have their numbers, in any order, one equation more than
+    /// once.
+    pub fn join(&mut self, mut parts: Vec<(usize, SplitRow)>) {
+        parts.sort_by_key(|(number, _)| *number);
+        let mut joined = Self::new(self.n(), self.hole_columns.len());
+        let mut parts = parts.into_iter().peekable();
+        let mut entries: Vec<(u32, f64)> = Vec::new();
+        for k in 0..self.n() {
+            entries.clear();
+            entries.extend(self.matrix.row(k).entries().map(|(column, value)| (column as u32, value)));
+            let mut rhs = self.rhs[k];
+            while let Some((_, part)) = parts.next_if(|(number, _)| *number == k) {
+                entries.extend(part.unknowns);
+                rhs -= part.known;
+                part.holes
+                    .into_iter()
+                    .for_each(|(hole, value)| self.hole_columns[hole as usize].push((k as u32, value)));
+            }
+            entries.sort_by_key(|(column, _)| *column);
+            for same in entries.chunk_by(|a, b| a.0 == b.0) {
+                joined.matrix.push(same[0].0, same.iter().map(|(_, value)| value).sum());
+            }
+            joined.matrix.end_row();
+            joined.rhs.push(rhs);
+        }
+        for (column, all) in joined.hole_columns.iter_mut().zip(&mut self.hole_columns) {
+            all.sort_by_key(|(row, _)| *row);
+            column.extend(all.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|(_, v)| v).sum())));
+        }
+        *self = joined;
     }
 
     /// Appends an equation.
