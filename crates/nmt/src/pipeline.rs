@@ -167,6 +167,7 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
         edge_nodes: Vec::new(),
+        grading: None,
         division: subdomain.division,
         irregularity: subdomain.irregularity,
         seed: problem.solve.seed,
