@@ -45,21 +45,13 @@ pub(crate) fn generate_graded(
     let size = section.contour.envelope().size();
     let clearance = LocalClearance { edge: params.edge_clearance, node: params.node_clearance, size };
     let moves = params.irregularity * LEVEL_OVER_ASKED * SQRT_2;
-    let Sown { xy: interior, asked: of_interior, exposed, census } =
-        sow(&Field { spacing: &spacing, boundary: &boundary, clearance, moves })?;
-    if interior.is_empty() {
+    let field = Field { spacing: &spacing, boundary: &boundary, clearance, moves };
+    let Sown { mut xy, asked, exposed, census } = sow(&field)?;
+    let n_boundary = boundary.xy().len();
+    if xy.len() == n_boundary {
         let remedy = "ask for a smaller spacing where the section is thin".into();
         return Err(CloudError::NoInterior { remedy });
     }
-    let n_boundary = boundary.xy().len();
-    let mut xy = Vec::with_capacity(n_boundary + interior.len());
-    xy.extend_from_slice(boundary.xy());
-    xy.extend(interior);
-    let mut asked = Vec::with_capacity(xy.len());
-    for &p in boundary.xy() {
-        asked.push(spacing.at(p)?);
-    }
-    asked.extend(of_interior);
     let lattice = *spacing.lattice();
     let local = Local { lattice, asked, clearance };
     if params.irregularity > 0.0 {

@@ -1,5 +1,6 @@
 //! Points and segments that the spacing grows from, many of them: the least of size + growth·distance at a place.
 
+use nmt_geom::point::distance_squared;
 use nmt_geom::{Bbox, Point, segment};
 
 /// A spacing along a segment (a point, where its ends are one), and how it grows with the distance.
@@ -24,7 +25,8 @@ impl Source {
     #[inline]
     pub fn distance(&self, p: Point) -> f64 {
         let [a, b] = self.ends;
-        if a == b { (p[0] - a[0]).hypot(p[1] - a[1]) } else { segment::distance_to(p, a, b) }
+        let q = if a == b { a } else { segment::nearest_point(p, a, b) };
+        distance_squared(p, q).sqrt()
     }
 }
 

@@ -38,13 +38,14 @@ impl LocalClearance {
     }
 }
 
-/// The interior nodes of a graded cloud.
+/// The nodes of a graded cloud.
 #[derive(Debug, Default)]
 pub(crate) struct Sown {
+    /// Those of the boundary, then the interior ones.
     pub xy: Vec<Point>,
     /// The spacing asked for at each.
     pub asked: Vec<f64>,
-    /// Numbers of those that a displacement could bring too near to the boundary, ascending.
+    /// Numbers of the interior nodes, the first being 0, that a displacement could bring too near to the boundary, ascending.
     pub exposed: Vec<u32>,
     pub census: Census,
 }
@@ -71,6 +72,10 @@ pub(crate) fn sow(field: &Field) -> Result<Sown, CloudError> {
         Sower::new(field, true).run()?;
     }
     let mut sower = Sower::new(field, false);
+    sower.sown.xy.extend_from_slice(field.boundary.xy());
+    for &p in field.boundary.xy() {
+        sower.sown.asked.push(field.spacing.at(p)?);
+    }
     sower.run()?;
     Ok(sower.sown)
 }
@@ -290,8 +295,7 @@ impl<'a> Sower<'a> {
         if standing == Standing::Near {
             let clearance = self.field.clearance.at(h);
             if self.index.locate(p) != Location::Inside {
-                let cause =
-                    if nearest_is_hole(self.field.boundary, p, h) { &mut census.in_hole } else { &mut census.outside };
+                let cause = if nearest_is_hole(self.field, p, h) { &mut census.in_hole } else { &mut census.outside };
                 *cause += 1;
                 return;
             }
@@ -300,7 +304,8 @@ impl<'a> Sower<'a> {
                 *(if by_edge { &mut census.near_edge } else { &mut census.near_node }) += 1;
                 return;
             }
-            self.sown.exposed.push(self.sown.xy.len() as u32);
+            let n_boundary = self.field.boundary.xy().len();
+            self.sown.exposed.push((self.sown.xy.len() - n_boundary) as u32);
         }
         census.kept += 1;
         self.sown.xy.push(p);
@@ -331,13 +336,14 @@ impl Known {
 }
 
 /// True where the segment nearest to a point outside the material is of a hole.
-fn nearest_is_hole(boundary: &RealBoundary, p: Point, h: f64) -> bool {
+fn nearest_is_hole(field: &Field, p: Point, h: f64) -> bool {
+    let boundary = field.boundary;
     if boundary.n_loops() == 1 {
         return false;
     }
     let index = boundary.index();
     let (mut radius, mut nearest) = (h, None::<(f64, usize)>);
-    while nearest.is_none() && radius < 4.0 * boundary.envelope().size() {
+    while nearest.is_none() && radius < 4.0 * field.clearance.size {
         index.candidates(p, p, radius, |k| {
             let [a, b] = index.segment(k);
             let distance = segment::distance_to(p, a, b);
