@@ -191,6 +191,9 @@ impl Draft {
 /// A number of spacings is met to this fraction, so that rounding adds no segment; as in (2) \[D4\].
 const COUNT_SLACK: f64 = 1.0e-6;
 
+/// Segments of a closed edge are a multiple of this, where their number follows from a spacing.
+const QUARTERS: usize = 4;
+
 /// Why an edge cannot be divided by a spacing.
 enum EdgeFault {
     Curve(nmt_curve::CurveError),
@@ -235,13 +238,20 @@ impl Places {
         let length = path.length();
         let table = SpacingTable::new(length, |s| spacing.at(path.point_at(s / length)).map_err(EdgeFault::Spacing));
         let table = table.map_err(|fault| match fault {
+            EdgeFault::Curve(nmt_curve::CurveError::NodeCount { most, .. }) => {
+                CloudError::TooFine { spacing: spacing.finest(), limit: most as f64, place: " on one edge" }
+            }
             EdgeFault::Curve(source) => CloudError::Edge { edge: number, source },
             EdgeFault::Spacing(error) => error,
         })?;
         let asked = table.spacings();
         let n = match edge.nodes {
             Some(_) => least_segments(edge),
-            None => least_segments(edge).max((asked - COUNT_SLACK * asked.max(1.0)).ceil() as usize),
+            None => {
+                let n = least_segments(edge).max((asked - COUNT_SLACK * asked.max(1.0)).ceil() as usize);
+                // A circle or an ellipse whose spacing is symmetric gets nodes that are.
+                if edge.curve.is_closed() { n.next_multiple_of(QUARTERS) } else { n }
+            }
         };
         Ok(Self::Listed(table.equal_parts(n)))
     }

@@ -106,14 +106,16 @@ pub enum CloudError {
     },
     /// A graded cloud of more nodes than memory would bear.
     #[error(
-        "with spacings down to {spacing:.1e} the cloud would have more than {limit:.0e} nodes; ask for larger ones, or let them \
-         grow faster"
+        "with spacings down to {spacing:.1e} there would be more than {limit:.0e} nodes{place}; ask for larger ones, or let \
+         them grow faster"
     )]
     TooFine {
         /// The least spacing asked for, user's length unit.
         spacing: f64,
         /// The most nodes allowed.
         limit: f64,
+        /// Where: empty for the cloud, or ` on one edge`.
+        place: &'static str,
     },
     /// A refinement along an edge that the section does not have.
     #[error("there is no edge {edge} to refine along; the section has {n_edges}, counted from 0")]

@@ -168,7 +168,7 @@ impl Search<'_> {
                 self.found.push(Source::point(at, values[row][column], self.growth));
             }
             if self.found.len() > MOST_SOURCES {
-                return Err(CloudError::TooFine { spacing: self.least, limit: MAX_GRID_POINTS });
+                return Err(CloudError::TooFine { spacing: self.least, limit: MAX_GRID_POINTS, place: "" });
             }
         } else if !is_fine && (steep.peek().is_some() || most > MUCH * least) {
             for (k, child) in cell.children().into_iter().enumerate() {

@@ -105,7 +105,7 @@ impl NestedLattice {
     /// The two steps from a site of a level to its neighbours: along x and y, or along the diagonals.
     pub(crate) fn steps(&self, level: usize) -> [[f64; 2]; 2] {
         let [x, y] = self.spacing().map(|s| s * 0.5f64.powi((level / 2) as i32));
-        if level % 2 == 0 { [[x, 0.0], [0.0, y]] } else { [[0.5 * x, 0.5 * y], [-0.5 * x, 0.5 * y]] }
+        if level.is_multiple_of(2) { [[x, 0.0], [0.0, y]] } else { [[0.5 * x, 0.5 * y], [-0.5 * x, 0.5 * y]] }
     }
 
     /// Which level a spacing asks for.
@@ -146,8 +146,8 @@ impl Levels {
     }
 
     /// Distance from a site of a level to the nearest others.
-    #[inline]
-    pub fn spacing(&self, level: usize) -> f64 {
+    #[cfg(test)]
+    fn spacing(&self, level: usize) -> f64 {
         self.spacings[level]
     }
 }

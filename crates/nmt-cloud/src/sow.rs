@@ -226,7 +226,11 @@ impl<'a> Sower<'a> {
     fn count(&mut self, sites: f64) -> Result<(), CloudError> {
         self.counted += sites;
         if self.counted > MAX_GRID_POINTS {
-            return Err(CloudError::TooFine { spacing: self.field.spacing.finest(), limit: MAX_GRID_POINTS });
+            return Err(CloudError::TooFine {
+                spacing: self.field.spacing.finest(),
+                limit: MAX_GRID_POINTS,
+                place: "",
+            });
         }
         Ok(())
     }
