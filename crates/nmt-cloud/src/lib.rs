@@ -52,6 +52,6 @@ pub use irregular::Displacements;
 pub use lattice::Lattice;
 pub use nearest::{Nearest, Scratch, TIE_REL};
 pub use nested::NestedLattice;
-pub use quality::{CloudQuality, quality};
+pub use quality::{Achieved, CloudQuality, quality};
 pub use section::{ClearanceUnit, CloudParams, DEFAULT_SEED, GivenNode, Section};
 pub use spacing::Spacing;
