@@ -71,7 +71,7 @@ fn refinements(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &
 }
 
 fn refinement(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &[Option<&Shape>]) -> Option<Refinement> {
-    let table = reader.table(item, "refine", value, "{ point = [1, 1], size = 0.001, growth = 0.3 }")?;
+    let table = reader.table(item, "", value, "{ point = [1, 1], size = 0.001, growth = 0.3 }")?;
     reader.known_keys(&table, "refine", REFINE_KEYS);
     let target = match (table.get("point"), table.get("edge")) {
         (Some(point), None) => reader.point(item, "point", point).map(Target::Point),
