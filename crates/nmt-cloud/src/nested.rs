@@ -146,8 +146,7 @@ impl Levels {
     }
 
     /// Distance from a site of a level to the nearest others.
-    #[cfg(test)]
-    fn spacing(&self, level: usize) -> f64 {
+    pub fn spacing(&self, level: usize) -> f64 {
         self.spacings[level]
     }
 }

@@ -17,8 +17,14 @@ use nmt_geom::point::along;
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_geom::{Location, LoopId, Point, RealBoundary, SegmentIndex, segment};
 
+/// The widest lattice spacing about a site is at most so many times what is asked for: a level more than ⁴√2, rounded up.
+const WIDEST: f64 = 1.7;
+
 /// Room for rounding about the reach of a clearance, as a fraction of it.
 const REACH_ROOM_REL: f64 = 1.0e-9;
+
+/// Levels are looked for within so many spacings of a site: what lies farther away is no neighbour.
+const NEARBY: f64 = 1.5;
 
 /// Clearances in units of the local spacing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,7 +188,7 @@ impl<'a> Sower<'a> {
             Standing::Inside => standing,
             Standing::Near => {
                 let clearance = self.field.clearance;
-                let reach = most * (clearance.edge.max(clearance.node) + self.field.moves);
+                let reach = most * (WIDEST * clearance.edge.max(clearance.node) + self.field.moves);
                 let room = SAME_POINT_REL * clearance.size;
                 let (centre, radius) = (along(corner, 0.5, side), 0.5 * side[0].hypot(side[1]));
                 if self.index.any_within(centre, radius + reach * (1.0 + REACH_ROOM_REL) + room) {
@@ -206,7 +212,7 @@ impl<'a> Sower<'a> {
             let h = self.asked(corner, own.clone(), from_function);
             if cell.level_of_corner() <= self.levels.level_of(h) {
                 self.count(1.0)?;
-                self.sow_site(corner, h, standing);
+                self.sow_site(corner, h, standing)?;
             }
             return Ok(());
         }
@@ -278,35 +284,36 @@ impl<'a> Sower<'a> {
                 _ => most,
             };
             let h = self.asked([x, y], own.clone(), from_function);
-            self.sow_site([x, y], h, standing);
+            self.sow_site([x, y], h, standing)?;
         }
         Ok(())
     }
 
     /// A site of a level that is asked for: a node where it is inside and clear of the boundary.
-    fn sow_site(&mut self, p: Point, h: f64, standing: Standing) {
+    fn sow_site(&mut self, p: Point, h: f64, standing: Standing) -> Result<(), CloudError> {
         if self.counts_only {
-            return;
+            return Ok(());
         }
         if standing == Standing::Near {
             let NestedLattice { origin, extent, .. } = self.lattice;
             if (0..2).any(|d| p[d] <= origin[d] || p[d] >= origin[d] + extent[d]) {
-                return;
+                return Ok(());
             }
         }
+        let around = if standing == Standing::Near { self.widest_around(p, h)? } else { h };
         let census = &mut self.sown.census;
         census.grid += 1;
         if standing == Standing::Near {
-            let clearance = self.field.clearance.at(h);
+            let clearance = self.field.clearance.at(around);
             if self.index.locate(p) != Location::Inside {
                 let cause = if nearest_is_hole(self.field, p, h) { &mut census.in_hole } else { &mut census.outside };
                 *cause += 1;
-                return;
+                return Ok(());
             }
             if !clearance.holds(p, self.index) {
                 let by_edge = !Clearance { node: 0.0, ..clearance }.holds(p, self.index);
                 *(if by_edge { &mut census.near_edge } else { &mut census.near_node }) += 1;
-                return;
+                return Ok(());
             }
             let n_boundary = self.field.boundary.xy().len();
             self.sown.exposed.push((self.sown.xy.len() - n_boundary) as u32);
@@ -314,6 +321,23 @@ impl<'a> Sower<'a> {
         census.kept += 1;
         self.sown.xy.push(p);
         self.sown.asked.push(h);
+        Ok(())
+    }
+
+    /// The widest lattice spacing about `p`, where `h` is asked for: that of its own level, or of the next coarser one where
+    /// that begins nearby, and at least `h`.
+    ///
+    /// A node half of its own spacing away from the boundary would be less than half as far from its nearest node as a
+    /// neighbour on a coarser lattice is.
+    fn widest_around(&self, p: Point, h: f64) -> Result<f64, CloudError> {
+        let own = self.levels.level_of(h);
+        let mut widest = h;
+        for [dx, dy] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
+            let q = [p[0] + NEARBY * h * dx, p[1] + NEARBY * h * dy];
+            widest = widest.max(self.field.spacing.at(q)?);
+        }
+        let level = self.levels.level_of(widest).max(own.saturating_sub(1));
+        Ok(h.max(self.levels.spacing(level)))
     }
 }
 
