@@ -188,7 +188,8 @@ impl<'a> Sower<'a> {
             Standing::Inside => standing,
             Standing::Near => {
                 let clearance = self.field.clearance;
-                let reach = most * (WIDEST * clearance.edge.max(clearance.node) + self.field.moves);
+                let widest = (WIDEST * most).min(self.field.spacing.most());
+                let reach = widest * clearance.edge.max(clearance.node) + most * self.field.moves;
                 let room = SAME_POINT_REL * clearance.size;
                 let (centre, radius) = (along(corner, 0.5, side), 0.5 * side[0].hypot(side[1]));
                 if self.index.any_within(centre, radius + reach * (1.0 + REACH_ROOM_REL) + room) {
@@ -331,6 +332,9 @@ impl<'a> Sower<'a> {
     /// neighbour on a coarser lattice is.
     fn widest_around(&self, p: Point, h: f64) -> Result<f64, CloudError> {
         let own = self.levels.level_of(h);
+        if own == 0 {
+            return Ok(self.levels.spacing(0));
+        }
         let mut widest = h;
         for [dx, dy] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
             let q = [p[0] + NEARBY * h * dx, p[1] + NEARBY * h * dy];
