@@ -8,8 +8,10 @@ mod poisson;
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
 
 use crate::error::NmtError;
+use crate::problem::GradingSettings;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
-use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
+use crate::report::place;
+use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Section, SpacingFunction, generate};
 use nmt_merge::{EdgeNodes, Planned, conform};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
@@ -167,6 +169,7 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
         edge_nodes: Vec::new(),
+        grading: subdomain.grading.as_ref().map(grading),
         division: subdomain.division,
         irregularity: subdomain.irregularity,
         seed: problem.solve.seed,
@@ -176,19 +179,27 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
     }
 }
 
+/// How the spacing varies, as the cloud takes it.
+fn grading(settings: &GradingSettings) -> Grading {
+    let function = settings.density.as_ref().map(|density| {
+        let formula = density.expression.clone();
+        SpacingFunction::new(move |p| formula.eval(&p))
+    });
+    Grading { function, refinements: settings.refine.clone(), ..Grading::default() }
+}
+
 /// A fault of the cloud in the terms of the file.
 fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> crate::problem::ProblemError {
     let item = format!("subdomain \"{}\"", subdomain.name);
+    let grading_place = subdomain.grading.as_ref().map_or(&subdomain.nodes_place, |grading| &grading.place);
     let at = |place, message: String, remedy: String| problem.source.error(place, &item, message, remedy);
     match error {
-        CloudError::NoInterior { remedy } => {
-            at(&subdomain.nodes_place, "the cloud has no interior node".into(), remedy)
-        }
+        CloudError::NoInterior { remedy } => at(grading_place, "the cloud has no interior node".into(), remedy),
         CloudError::BoundaryCrosses { at: p, remedy } => at(
-            &subdomain.nodes_place,
+            grading_place,
             format!(
                 "the polygon through the boundary nodes crosses itself near {}: too few nodes for the curves",
-                crate::report::place(p)
+                place(p)
             ),
             remedy,
         ),
@@ -196,6 +207,20 @@ fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> c
             let places = subdomain.edge_places.iter().chain(subdomain.holes.iter().flat_map(|h| &h.edge_places));
             let place = places.clone().nth(edge).unwrap_or(&subdomain.place);
             at(place, source.to_string(), "correct this edge".into())
+        }
+        CloudError::NotASpacing { at: p, value } => {
+            let density = subdomain.grading.as_ref().and_then(|grading| grading.density.as_ref());
+            let message = format!("`density` is {value} at {}, where a spacing must be a positive number", place(p));
+            let remedy = match value <= 0.0 {
+                true => "give it a least value, for example max(…, 0.001)",
+                false => "correct the formula, so that it is finite everywhere in the subdomain",
+            };
+            at(density.map_or(grading_place, |density| &density.place), message, remedy.into())
+        }
+        CloudError::TooFine { spacing, limit, place } => {
+            let message =
+                format!("with spacings down to {spacing:.1e} there would be more than {limit:.0e} nodes{place}");
+            at(grading_place, message, "ask for larger ones, or let them grow faster".into())
         }
         other => at(&subdomain.nodes_place, other.to_string(), "choose other densities".into()),
     }

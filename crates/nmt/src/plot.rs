@@ -65,6 +65,8 @@ pub struct Part<'a> {
     pub xy: &'a [[f64; 2]],
     /// Mark of each node, shape (n_nodes,); nodes beyond its end count as interior.
     pub marks: &'a [NodeMark],
+    /// Spacing at each node of a graded cloud, shape (n_nodes,), in the user's length unit; empty for a uniform one.
+    pub spacings: &'a [f64],
     /// Closed loops of the real boundary by node number, main contour and holes; without them the rim of the mesh is drawn.
     pub loops: &'a [Vec<u32>],
     /// Triangles by node number, shape (n_triangles, 3), either orientation; empty for a bare cloud.

@@ -8,11 +8,14 @@ use super::page::{
 };
 use super::scene::{MarkForm, Point, Scene, Shape, Stroke};
 use super::{Caption, NodeMark, Part};
+use std::collections::BTreeMap;
 
 /// Diameter of an interior node relative to the spacing of nodes.
 const SIZE_TO_SPACING: f64 = 0.36;
 /// Bounds of that diameter, in page units: the lower still prints, the upper is that of a mark, not of a blot.
 const SIZE_BOUNDS: [f64; 2] = [0.6, 6.0];
+/// Sizes of marks of a graded cloud, each √½ of the one before: down to the least bound.
+const MOST_CLASSES: u32 = 8;
 /// Edge nodes relative to interior ones.
 const EDGE_SIZE: f64 = 1.2;
 /// Vertices relative to interior nodes, and their least size.
@@ -78,6 +81,18 @@ fn mark_size(view: &View, parts: &[Part<'_>]) -> f64 {
     (SIZE_TO_SPACING * (area / n_nodes.max(1) as f64).sqrt()).clamp(SIZE_BOUNDS[0], SIZE_BOUNDS[1])
 }
 
+/// How many times √½ a node of a graded cloud is smaller than the largest mark, so that marks do not run into each other
+/// where nodes are dense; 0 for all of a uniform one.
+fn class_of(part: &Part<'_>, node: usize, largest: f64, scale: f64) -> u32 {
+    let Some(spacing) = part.spacings.get(node) else { return 0 };
+    let room = SIZE_TO_SPACING * spacing * scale / largest;
+    (0..MOST_CLASSES).find(|&class| room >= class_factor(class + 1)).unwrap_or(MOST_CLASSES)
+}
+
+fn class_factor(class: u32) -> f64 {
+    std::f64::consts::FRAC_1_SQRT_2.powi(class as i32)
+}
+
 /// The figure of the nodes of all parts.
 pub(super) fn scene(caption: &Caption<'_>, parts: &[Part<'_>]) -> Scene {
     let size = mark_size(&single_view(parts), parts);
@@ -99,9 +114,15 @@ pub(super) fn scene(caption: &Caption<'_>, parts: &[Part<'_>]) -> Scene {
             for (number, (part, points)) in parts.iter().zip(&points).enumerate() {
                 let of_this_kind =
                     |&(i, p): &(usize, &Point)| mark_of(part, i) == mark && p.iter().all(|v| v.is_finite());
-                let centres = points.iter().enumerate().filter(of_this_kind).map(|(_, &p)| p).collect();
-                let (form, size, colour, heart) = symbol(mark, size, of_subdomain(number));
-                shapes.extend(marks(centres, form, size, colour, heart));
+                let mut by_size: BTreeMap<u32, Vec<Point>> = BTreeMap::new();
+                for (i, &p) in points.iter().enumerate().filter(of_this_kind) {
+                    by_size.entry(class_of(part, i, size, view.scale)).or_default().push(p);
+                }
+                for (class, centres) in by_size {
+                    let size = (size * class_factor(class)).max(SIZE_BOUNDS[0]);
+                    let (form, size, colour, heart) = symbol(mark, size, of_subdomain(number));
+                    shapes.extend(marks(centres, form, size, colour, heart));
+                }
             }
         }
         vec![Shape::Group { id: "nodes", shapes }]

@@ -40,7 +40,14 @@ impl Section {
     }
 
     fn part(&self) -> Part<'_> {
-        Part { name: self.name, xy: &self.xy, marks: &self.marks, loops: &self.loops, triangles: &self.triangles }
+        Part {
+            name: self.name,
+            xy: &self.xy,
+            marks: &self.marks,
+            spacings: &[],
+            loops: &self.loops,
+            triangles: &self.triangles,
+        }
     }
 
     fn fields(&self) -> Fields<'_> {

@@ -52,6 +52,8 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "edge_clearance",
     "node_clearance",
     "conforming",
+    "density",
+    "refine",
     "outline",
     "circle",
     "ellipse",
@@ -60,6 +62,8 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
 ];
 /// The keys of `[[subdomain.hole]]`.
 pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle"];
+/// The keys of an entry of `refine`.
+pub(super) const REFINE_KEYS: &[&str] = &["point", "edge", "size", "growth"];
 /// The keys of `[mesh]`.
 pub(super) const MESH_KEYS: &[&str] = &["method", "elim", "smooth"];
 /// The keys of `[solve]`.
