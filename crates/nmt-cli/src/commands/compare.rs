@@ -1,9 +1,9 @@
 //! `nmt compare`: every formulation on the same clouds.
 
-use super::parse;
+use super::{out_dir, parse};
 use crate::args::CompareArgs;
 use crate::exit::Failure;
-use crate::files::{OutDir, print, read_problem};
+use crate::files::{print, read_problem};
 use crate::timing::Stopwatch;
 use nmt::compare::{Comparison, compare as compare_rows, text, time_svg, unknowns_svg};
 use nmt::pipeline::{clouds, meshes};
@@ -24,6 +24,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
             first.subdomains.len()
         )));
     }
+    let out = out_dir(args.out.as_deref())?;
     let mut comparison = Comparison::new(first, args.exact_j);
     for problem in &problems {
         let rows = clouds(problem, &mut |_, _| {})
@@ -33,13 +34,13 @@ pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
         comparison.rows.extend(rows);
     }
     let as_json = comparison.json().map_err(|error| Failure::Json(error.to_string()))?;
-    if let Some(out) = &args.out {
-        let out = OutDir::create(out)?;
+    if let Some(mut out) = out {
         out.write("compare.json", &as_json)?;
         if args.exact_j.is_some() {
             out.write_picture("compare-unknowns", &unknowns_svg(&comparison))?;
             out.write_picture("compare-time", &time_svg(&comparison))?;
         }
+        out.publish()?;
     }
     print(&if args.json { as_json } else { text(&comparison) })?;
     if comparison.is_failure() { Err(Failure::NoMethod) } else { Ok(()) }

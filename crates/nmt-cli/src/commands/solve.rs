@@ -1,9 +1,8 @@
 //! `nmt solve`: torsion of the section, or the Poisson problem of the file.
 
-use super::{finish, load};
+use super::{finish, load, out_dir};
 use crate::args::SolveArgs;
 use crate::exit::Failure;
-use crate::files::OutDir;
 use crate::timing::Stopwatch;
 use nmt::figures::{edges_svg, mesh_svg, nodes_svg, solved_svg};
 use nmt::io::{NodeFields, csv_of_edges, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
@@ -14,13 +13,13 @@ use nmt::report::Report;
 pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
+    let mut out = out_dir(args.out.as_deref())?;
     let mut lap = |k, stage| watch.lap(k, stage);
     let solved = clouds(&problem, &mut lap)
         .and_then(|clouds| meshes(&problem, clouds, &mut lap))
         .and_then(|meshes| solved(&problem, meshes, &mut lap))
         .map_err(|e| Failure::of(e, &problem.source))?;
-    if let Some(out) = &args.out {
-        let out = OutDir::create(out)?;
+    if let Some(out) = &mut out {
         let fields = NodeFields::of(&solved);
         out.write("nodes.csv", csv_of_solutions(&fields))?;
         out.write("mesh.vtu", vtu_of_solutions(&fields))?;
@@ -35,5 +34,5 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
             out.write_picture("edges", &edges_svg(&problem, parts))?;
         }
     }
-    finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, args.out.as_deref())
+    finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, out)
 }

@@ -3,7 +3,8 @@
 use super::load;
 use crate::args::{ProblemArgs, StarArgs};
 use crate::exit::Failure;
-use crate::files::{OutDir, print};
+use crate::files::print;
+use crate::out_dir::OutDir;
 use nmt::NmtError;
 use nmt::figures::star_svg;
 use nmt::pipeline::{clouds, meshes};
@@ -23,6 +24,8 @@ pub fn star(args: &StarArgs) -> Result<(), Failure> {
         }
         other => Failure::Option(other.to_string()),
     })?;
-    OutDir::create(&args.out)?.write_picture(&format!("star-{}", args.node), &star_svg(&problem, &view))?;
+    let mut out = OutDir::create(&args.out)?;
+    out.write_picture(&format!("star-{}", args.node), &star_svg(&problem, &view))?;
+    out.publish()?;
     print(&view.text())
 }
