@@ -8,6 +8,9 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "nmt", version, about, long_about = None)]
 pub struct Args {
+    /// Draw no bar of progress; without this one is drawn on stderr, where that is a terminal, after a second
+    #[arg(long, global = true)]
+    pub no_progress: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,

@@ -24,6 +24,7 @@ mod exit;
 mod files;
 mod interrupt;
 mod out_dir;
+mod progress;
 mod timing;
 
 use args::{Args, Command, Picture};
@@ -42,14 +43,16 @@ pub fn run<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) ->
         }
     };
     interrupt::handle();
+    let progress = progress::Progress::new(!args.no_progress);
     let outcome = match &args.command {
-        Command::Check(options) => commands::check(options),
-        Command::Nodes(options) => commands::nodes(options),
-        Command::Mesh(options) => commands::mesh(options),
-        Command::Solve(options) => commands::solve(options),
-        Command::Compare(options) => commands::compare(options),
-        Command::Plot(Picture::Star(options)) => commands::star(options),
+        Command::Check(options) => commands::check(options, &progress),
+        Command::Nodes(options) => commands::nodes(options, &progress),
+        Command::Mesh(options) => commands::mesh(options, &progress),
+        Command::Solve(options) => commands::solve(options, &progress),
+        Command::Compare(options) => commands::compare(options, &progress),
+        Command::Plot(Picture::Star(options)) => commands::star(options, &progress),
     };
+    progress.clear();
     // Where an interruption is under way it ends the run, and an error that it caused is not told.
     drop(interrupt::uninterrupted());
     match outcome {

@@ -5,6 +5,7 @@
 
 use crate::exit::Failure;
 use crate::interrupt::{Traces, uninterrupted};
+use crate::progress::Progress;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -21,11 +22,12 @@ pub struct OutDir {
     path: PathBuf,
     traces: Traces,
     names: Vec<String>,
+    progress: Progress,
 }
 
 impl OutDir {
     /// Creates it if need be; that nothing can be written there is found out before there is anything to write.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
+    pub fn create(path: &Path, progress: &Progress) -> Result<Self, Failure> {
         let failed = |source| Failure::io(path, "written", source);
         let mut held = uninterrupted();
         let is_missing = |ancestor: &&Path| !ancestor.as_os_str().is_empty() && !ancestor.exists();
@@ -42,7 +44,7 @@ impl OutDir {
                 return Err(failed(source));
             }
         }
-        Ok(Self { path: path.into(), traces, names: Vec::new() })
+        Ok(Self { path: path.into(), traces, names: Vec::new(), progress: progress.clone() })
     }
 
     /// Writes a file, which is not seen before [`OutDir::publish`].
@@ -56,6 +58,7 @@ impl OutDir {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        self.progress.begin(&format!("{name}, after {} files", self.names.len()));
         let begun = {
             let _held = uninterrupted();
             File::create(self.traces.unfinished.join(name))

@@ -11,7 +11,7 @@ use crate::mend::mend;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
-use crate::solve::Stage;
+use crate::solve::{Event, Stage};
 use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
@@ -55,7 +55,7 @@ pub(crate) struct Solved {
 pub(crate) fn solve_discrete(
     discrete: Discrete,
     params: &SolveParams,
-    ended: &mut dyn FnMut(Stage),
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Solved, MfdmError> {
     params.check()?;
     let Discrete { mesh, conditions, source, fluxes } = discrete;
@@ -75,14 +75,14 @@ pub(crate) fn solve_discrete(
         let only_interior =
             params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
         let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
-        let stencils = Stencils::new(&surroundings, &nearest, stars, range.clone());
+        let stencils = Stencils::observed(&surroundings, &nearest, stars, range.clone(), observer);
         stencils.require(range, mesh.xy(), 1)?;
         if params.formulation == Formulation::Local {
             stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
         }
         stencils
     };
-    ended(Stage::Stencils);
+    observer(Event::Ended(Stage::Stencils));
 
     let rule = params.rule()?;
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
@@ -124,15 +124,16 @@ pub(crate) fn solve_discrete(
     drop(weak);
     // Rows are the larger part of what is held; only smoothing needs them again.
     let stencils = (!interpolates).then_some(stencils);
-    ended(Stage::Assemble);
+    observer(Event::Ended(Stage::Assemble));
 
-    let Nodal { values, constants, linear } = solve_system(&system, mesh.xy(), &equations, &roles, params.solver)?;
+    let Nodal { values, constants, linear } =
+        solve_system(&system, mesh.xy(), &equations, &roles, params.solver, observer)?;
     drop(system);
     let values = match stencils {
         Some(stencils) => smoothed(&stencils, values),
         None => values,
     };
-    ended(Stage::Solve);
+    observer(Event::Ended(Stage::Solve));
 
     let field = if params.formulation == Formulation::Fem {
         NodalPolynomials::linear(mesh, &values)
@@ -140,7 +141,7 @@ pub(crate) fn solve_discrete(
         let order = params.recovery_order();
         let recovery =
             StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
-        NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?
+        NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
 }
@@ -168,6 +169,7 @@ fn solve_system(
     equations: &[Equation],
     roles: &Roles,
     choice: Solver,
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Nodal, MfdmError> {
     let mut right_sides = vec![system.rhs.clone()];
     for column in &system.hole_columns {
@@ -175,7 +177,7 @@ fn solve_system(
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
         right_sides.push(b);
     }
-    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice)?;
+    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };

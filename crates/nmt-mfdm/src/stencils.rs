@@ -5,6 +5,7 @@ use crate::error::MfdmError;
 use crate::mwls::Mwls;
 use crate::parallel::take_pieces;
 use crate::repair::{Demand, StarOutcome, sound_star};
+use crate::solve::Event;
 use crate::star::{StarChoice, StarFinder};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
@@ -120,6 +121,18 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
+        Self::observed(surroundings, nearest, params, range, &mut |_| {})
+    }
+
+    /// [`Self::new`], telling how many nodes are done.
+    pub(crate) fn observed(
+        surroundings: &Surroundings,
+        nearest: &Nearest,
+        params: StarParams,
+        range: Range<usize>,
+        observer: &mut dyn FnMut(Event),
+    ) -> Self {
+        let of = range.len();
         let metric = surroundings.metric();
         let first = range.start;
         let part = |piece: Range<usize>| {
@@ -144,6 +157,7 @@ impl Stencils {
             all.rows.extend(part.rows);
             all.radii.extend(part.radii);
             all.outcomes.extend(part.outcomes);
+            observer(Event::Nodes { done: all.outcomes.len(), of });
         });
         all
     }

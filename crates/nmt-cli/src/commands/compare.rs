@@ -4,13 +4,14 @@ use super::{out_dir, parse};
 use crate::args::CompareArgs;
 use crate::exit::Failure;
 use crate::files::{print, read_problem};
+use crate::progress::Progress;
 use crate::timing::Stopwatch;
 use nmt::compare::{Comparison, compare as compare_rows, text, time_svg, unknowns_svg};
 use nmt::pipeline::{clouds, meshes};
 use nmt::problem::{Overrides, Problem};
 
 /// Runs the command.
-pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
+pub fn compare(args: &CompareArgs, progress: &Progress) -> Result<(), Failure> {
     let watch = Stopwatch::start();
     let source = read_problem(&args.file)?;
     let densities: Vec<Option<[usize; 2]>> =
@@ -24,7 +25,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
             first.subdomains.len()
         )));
     }
-    let out = out_dir(args.out.as_deref())?;
+    let out = out_dir(args.out.as_deref(), progress)?;
     let mut comparison = Comparison::new(first, args.exact_j);
     for problem in &problems {
         let rows = clouds(problem, &mut |_, _| {})
@@ -42,6 +43,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
         }
         out.publish()?;
     }
+    progress.clear();
     print(&if args.json { as_json } else { text(&comparison) })?;
     if comparison.is_failure() { Err(Failure::NoMethod) } else { Ok(()) }
 }

@@ -1,8 +1,9 @@
 //! `nmt solve`: torsion of the section, or the Poisson problem of the file.
 
-use super::{finish, load, out_dir};
+use super::{finish, load, observer, out_dir};
 use crate::args::SolveArgs;
 use crate::exit::Failure;
+use crate::progress::Progress;
 use crate::timing::Stopwatch;
 use nmt::figures::{edges_svg, mesh_svg, nodes_svg, solved_svg};
 use nmt::io::{NodeFields, csv_of_edges, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
@@ -10,15 +11,16 @@ use nmt::pipeline::{Solved, clouds, meshes, solved};
 use nmt::report::Report;
 
 /// Runs the command.
-pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
+pub fn solve(args: &SolveArgs, progress: &Progress) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
-    let mut out = out_dir(args.out.as_deref())?;
-    let mut lap = |k, stage| watch.lap(k, stage);
-    let solved = clouds(&problem, &mut lap)
-        .and_then(|clouds| meshes(&problem, clouds, &mut lap))
-        .and_then(|meshes| solved(&problem, meshes, &mut lap))
+    let mut out = out_dir(args.out.as_deref(), progress)?;
+    let mut observer = observer(&problem, &mut watch, progress);
+    let solved = clouds(&problem, &mut observer)
+        .and_then(|clouds| meshes(&problem, clouds, &mut observer))
+        .and_then(|meshes| solved(&problem, meshes, &mut observer))
         .map_err(|e| Failure::of(e, &problem.source))?;
+    drop(observer);
     if let Some(out) = &mut out {
         let fields = NodeFields::of(&solved);
         out.write("nodes.csv", csv_of_solutions(&fields))?;
@@ -34,5 +36,5 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
             out.write_picture("edges", &edges_svg(&problem, parts))?;
         }
     }
-    finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, out)
+    finish(Report::of_solved(&problem, &solved, &args.at), (&watch, progress), args.problem.json, out)
 }

@@ -1,6 +1,6 @@
 //! The last stage of a Poisson problem: ∇²u = f in every subdomain, each alone.
 
-use super::{MeshPart, Observer, elimination_fault};
+use super::{MeshPart, Observer, elimination_fault, of_solution};
 use crate::error::NmtError;
 use crate::problem::{Formula, Place, PoissonSettings, Problem, ProblemError, Subdomain};
 use nmt_geom::{NodeId, Point};
@@ -74,7 +74,7 @@ pub fn poisson_solutions(
     }
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
-        solve_part(problem, subdomain, settings, part, &mut |stage| observer(k, stage.into()))
+        solve_part(problem, subdomain, settings, part, &mut of_solution(k, observer))
     };
     meshes.into_iter().enumerate().map(solve).collect()
 }
@@ -84,7 +84,7 @@ fn solve_part(
     subdomain: &Subdomain,
     settings: &PoissonSettings,
     part: MeshPart,
-    ended: &mut dyn FnMut(nmt_mfdm::Stage),
+    observer: &mut dyn FnMut(nmt_mfdm::Event),
 ) -> Result<PoissonPart, NmtError> {
     let params = problem.solve.params(subdomain.formulation);
     let source = |p: Point| settings.source.at(p);
@@ -97,7 +97,7 @@ fn solve_part(
         fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
         section: &part.section,
     };
-    let solution = solve_poisson_observed(&poisson, &part.mesh, &params, ended).map_err(|error| {
+    let solution = solve_poisson_observed(&poisson, &part.mesh, &params, observer).map_err(|error| {
         let fault = datum_fault(problem, subdomain, settings, &error);
         fault.map_or(NmtError::Solve { subdomain: part.name.clone(), source: error }, |f| NmtError::Problem(vec![f]))
     })?;
