@@ -48,6 +48,6 @@ fn every_stage_begins_and_ends_once_and_tells_what_it_does_in_between() {
                 _ => None,
             })
             .collect();
-        assert!(residuals.len() > 3 && residuals[0] > 1.0 && residuals.last().is_some_and(|r| *r <= 1.0));
+        assert!(residuals.last().is_some_and(|last| *last <= 1.0), "{residuals:?}");
     }
 }
