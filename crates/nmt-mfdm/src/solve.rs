@@ -37,7 +37,7 @@ pub enum Event {
         /// Nodes in all.
         of: usize,
     },
-    /// One more iteration of the linear solver.
+    /// One more iteration of the linear solver, short of its target.
     Iteration {
         /// Iterations for this right side.
         iterations: usize,
