@@ -58,7 +58,7 @@ impl OutDir {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        self.progress.begin(&format!("{name}, after {} files", self.names.len()));
+        self.tell(name);
         let begun = {
             let _held = uninterrupted();
             File::create(self.traces.unfinished.join(name))
@@ -74,10 +74,19 @@ impl OutDir {
     }
 
     /// Writes a picture as NAME.svg and NAME.png.
-    pub fn write_picture(&mut self, name: &str, svg: &str) -> Result<(), Failure> {
-        self.write(&format!("{name}.svg"), svg)?;
-        let png = nmt::plot::png(svg).map_err(|source| Failure::Picture { name: format!("{name}.png"), source })?;
-        self.write(&format!("{name}.png"), png)
+    pub fn write_picture(&mut self, name: &str, svg: impl FnOnce() -> String) -> Result<(), Failure> {
+        let [svg_name, png_name] = ["svg", "png"].map(|kind| format!("{name}.{kind}"));
+        self.tell(&svg_name);
+        let svg = svg();
+        self.write(&svg_name, &svg)?;
+        self.tell(&png_name);
+        let png = nmt::plot::png(&svg).map_err(|source| Failure::Picture { name: png_name.clone(), source })?;
+        self.write(&png_name, png)
+    }
+
+    fn tell(&self, name: &str) {
+        let n = self.names.len();
+        self.progress.begin(&format!("{name}, after {n} file{}", if n == 1 { "" } else { "s" }));
     }
 
     /// Puts all files in place, instead of those of the same names.

@@ -38,8 +38,8 @@ pub fn compare(args: &CompareArgs, progress: &Progress) -> Result<(), Failure> {
     if let Some(mut out) = out {
         out.write("compare.json", &as_json)?;
         if args.exact_j.is_some() {
-            out.write_picture("compare-unknowns", &unknowns_svg(&comparison))?;
-            out.write_picture("compare-time", &time_svg(&comparison))?;
+            out.write_picture("compare-unknowns", || unknowns_svg(&comparison))?;
+            out.write_picture("compare-time", || time_svg(&comparison))?;
         }
         out.publish()?;
     }

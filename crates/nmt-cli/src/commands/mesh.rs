@@ -21,12 +21,14 @@ pub fn mesh(args: &MeshArgs, progress: &Progress) -> Result<(), Failure> {
         .map_err(|e| Failure::of(e, &problem.source))?;
     drop(observer);
     if let Some(out) = &mut out {
-        out.write("nodes.csv", csv_of_clouds(parts.iter().map(|p| (&*p.name, &*p.edge_names, p.mesh.cloud()))))?;
-        out.write("mesh.vtu", vtu_of_meshes(&parts))?;
-        out.write("mesh.msh", msh_of_meshes(&parts))?;
-        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
-        out.write_picture("quality", &quality_svg(&problem, &parts))?;
-        out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
+        out.write_with("nodes.csv", |sink| {
+            csv_of_clouds(sink, parts.iter().map(|p| (&*p.name, &*p.edge_names, p.mesh.cloud())))
+        })?;
+        out.write_with("mesh.vtu", |sink| vtu_of_meshes(sink, &parts))?;
+        out.write_with("mesh.msh", |sink| msh_of_meshes(sink, &parts))?;
+        out.write_picture("nodes", || nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
+        out.write_picture("quality", || quality_svg(&problem, &parts))?;
+        out.write_picture("mesh", || mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
     }
     finish(Report::of_meshes(&problem, &parts), (&watch, progress), args.cloud.problem.json, out)
 }

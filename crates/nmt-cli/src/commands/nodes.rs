@@ -18,8 +18,10 @@ pub fn nodes(args: &CloudArgs, progress: &Progress) -> Result<(), Failure> {
     let parts =
         clouds(&problem, &mut observer(&problem, &mut watch, progress)).map_err(|e| Failure::of(e, &problem.source))?;
     if let Some(out) = &mut out {
-        out.write("nodes.csv", csv_of_clouds(parts.iter().map(|p| (&*p.name, &*p.edge_names, &p.cloud))))?;
-        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, &p.cloud))))?;
+        out.write_with("nodes.csv", |sink| {
+            csv_of_clouds(sink, parts.iter().map(|p| (&*p.name, &*p.edge_names, &p.cloud)))
+        })?;
+        out.write_picture("nodes", || nodes_svg(&problem, parts.iter().map(|p| (&*p.name, &p.cloud))))?;
     }
     finish(Report::of_clouds(&problem, &parts), (&watch, progress), args.problem.json, out)
 }

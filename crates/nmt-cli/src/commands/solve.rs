@@ -23,17 +23,17 @@ pub fn solve(args: &SolveArgs, progress: &Progress) -> Result<(), Failure> {
     drop(observer);
     if let Some(out) = &mut out {
         let fields = NodeFields::of(&solved);
-        out.write("nodes.csv", csv_of_solutions(&fields))?;
-        out.write("mesh.vtu", vtu_of_solutions(&fields))?;
-        out.write("mesh.msh", msh_of_solutions(&fields))?;
-        out.write("stars.json", stars_json(&fields).map_err(|error| Failure::Json(error.to_string()))?)?;
+        out.write_with("nodes.csv", |sink| csv_of_solutions(sink, &fields))?;
+        out.write_with("mesh.vtu", |sink| vtu_of_solutions(sink, &fields))?;
+        out.write_with("mesh.msh", |sink| msh_of_solutions(sink, &fields))?;
+        out.write_with("stars.json", |sink| stars_json(sink, &fields))?;
         let parts = solved.parts();
-        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
-        out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
-        out.write_picture("solution", &solved_svg(&problem, &solved))?;
+        out.write_picture("nodes", || nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
+        out.write_picture("mesh", || mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
+        out.write_picture("solution", || solved_svg(&problem, &solved))?;
         if let Solved::Torsion(parts) = &solved {
             out.write("edges.csv", csv_of_edges(parts))?;
-            out.write_picture("edges", &edges_svg(&problem, parts))?;
+            out.write_picture("edges", || edges_svg(&problem, parts))?;
         }
     }
     finish(Report::of_solved(&problem, &solved, &args.at), (&watch, progress), args.problem.json, out)

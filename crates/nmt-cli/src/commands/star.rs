@@ -29,7 +29,7 @@ pub fn star(args: &StarArgs, progress: &Progress) -> Result<(), Failure> {
         other => Failure::Option(other.to_string()),
     })?;
     let mut out = OutDir::create(&args.out, progress)?;
-    out.write_picture(&format!("star-{}", args.node), &star_svg(&problem, &view))?;
+    out.write_picture(&format!("star-{}", args.node), || star_svg(&problem, &view))?;
     out.publish()?;
     progress.clear();
     print(&view.text())
