@@ -5,6 +5,7 @@
 
 mod poisson;
 
+pub(crate) use poisson::solve_on;
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
 
 use crate::error::NmtError;

@@ -87,6 +87,19 @@ fn solve_part(
     observer: &mut dyn FnMut(nmt_mfdm::Event),
 ) -> Result<PoissonPart, NmtError> {
     let params = problem.solve.params(subdomain.formulation);
+    let (solution, errors) = solve_on(problem, subdomain, settings, (&part, &params), observer)?;
+    let data = PoissonData { settings: settings.clone(), fluxes: subdomain.fluxes.clone() };
+    Ok(PoissonPart { part, params, solution, data, errors })
+}
+
+/// The solution on one mesh, and its errors where the exact solution is given.
+pub(crate) fn solve_on(
+    problem: &Problem,
+    subdomain: &Subdomain,
+    settings: &PoissonSettings,
+    (part, params): (&MeshPart, &SolveParams),
+    observer: &mut dyn FnMut(nmt_mfdm::Event),
+) -> Result<(PoissonSolution, Option<PoissonErrors>), NmtError> {
     let source = |p: Point| settings.source.at(p);
     let boundary = |p: Point| settings.boundary.as_ref().map_or(0.0, |formula| formula.at(p));
     let fluxes: Vec<_> = subdomain.fluxes.iter().map(|flux| flux.as_ref().map(|q| move |p: Point| q.at(p))).collect();
@@ -97,19 +110,18 @@ fn solve_part(
         fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
         section: &part.section,
     };
-    let solution = solve_poisson_observed(&poisson, &part.mesh, &params, observer).map_err(|error| {
+    let solution = solve_poisson_observed(&poisson, &part.mesh, params, observer).map_err(|error| {
         let fault = datum_fault(problem, subdomain, settings, &error);
         fault.map_or(NmtError::Solve { subdomain: part.name.clone(), source: error }, |f| NmtError::Problem(vec![f]))
     })?;
     let errors = match &settings.exact {
         Some(exact) => {
-            let errors = errors(exact, &solution, &part);
+            let errors = errors(exact, &solution, part);
             Some(errors.map_err(|fault| NmtError::Problem(vec![exact_fault(problem, &part.name, exact, fault)]))?)
         }
         None => None,
     };
-    let data = PoissonData { settings: settings.clone(), fluxes: subdomain.fluxes.clone() };
-    Ok(PoissonPart { part, params, solution, data, errors })
+    Ok((solution, errors))
 }
 
 /// A datum that is not finite, in the terms of the file.
