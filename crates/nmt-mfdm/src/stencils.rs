@@ -176,6 +176,11 @@ impl Stencils {
         self.outcomes.push(outcome);
     }
 
+    /// How the stars are chosen.
+    pub(crate) fn params(&self) -> StarParams {
+        self.params
+    }
+
     /// Rows of a star.
     fn n_rows(&self) -> usize {
         n_monomials(self.params.order) - self.params.first_row()

@@ -13,9 +13,9 @@ pub use poisson::PoissonFigures;
 pub use text::text;
 
 use crate::error::NmtError;
-use crate::pipeline::{MeshPart, elimination_fault};
+use crate::pipeline::{MeshPart, elimination_fault, torsion};
 use crate::problem::Problem;
-use nmt_mfdm::{Formulation, MfdmError, SolveParams, Test, TorsionProblem, Trial, solve};
+use nmt_mfdm::{Formulation, MfdmError, SolveParams, Test, Trial, solve};
 use serde::Serialize;
 
 /// One way to solve: what is varied in a comparison. All else is the default of its order.
@@ -273,11 +273,7 @@ pub fn compare(
         return Ok(rows);
     }
     for (subdomain, part) in problem.subdomains.iter().zip(meshes) {
-        let torsion = TorsionProblem {
-            shear_modulus: subdomain.shear_modulus,
-            load: problem.solve.load,
-            holes: problem.solve.holes,
-        };
+        let torsion = torsion(problem, subdomain);
         let mut runs = Vec::with_capacity(methods().len());
         for method in methods() {
             let start = clock(&method);

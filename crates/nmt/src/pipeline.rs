@@ -5,8 +5,8 @@
 
 mod poisson;
 
-pub(crate) use poisson::solve_on;
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
+pub(crate) use poisson::{poisson_on, solve_on};
 
 use crate::error::NmtError;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
@@ -301,16 +301,17 @@ pub fn solutions(
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
         let params = problem.solve.params(subdomain.formulation);
-        let torsion = TorsionProblem {
-            shear_modulus: subdomain.shear_modulus,
-            load: problem.solve.load,
-            holes: problem.solve.holes,
-        };
+        let torsion = torsion(problem, subdomain);
         let solution = solve_observed(&torsion, &part.mesh, &params, &mut of_solution(k, observer))
             .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
         Ok(SolvedPart { part, params, solution })
     };
     meshes.into_iter().enumerate().map(solve).collect()
+}
+
+/// The torsion problem of a subdomain.
+pub(crate) fn torsion(problem: &Problem, subdomain: &Subdomain) -> TorsionProblem {
+    TorsionProblem { shear_modulus: subdomain.shear_modulus, load: problem.solve.load, holes: problem.solve.holes }
 }
 
 /// A Poisson problem where torsion is asked for: what it `does` instead of that, and the remedy.

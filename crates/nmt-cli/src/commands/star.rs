@@ -29,8 +29,19 @@ pub fn star(args: &StarArgs, progress: &Progress) -> Result<(), Failure> {
         other => Failure::Option(other.to_string()),
     })?;
     let mut out = OutDir::create(&args.out, progress)?;
-    out.write_picture(&format!("star-{}", args.node), || star_svg(&problem, &view))?;
+    out.write_picture(&file_name(&view, parts.len() > 1), || star_svg(&problem, &view))?;
     out.publish()?;
     progress.clear();
     print(&view.text())
+}
+
+/// `star-N`, or where there are several subdomains `star-NAME-N`; what file systems do not take in a name becomes `_`.
+fn file_name(view: &StarView, several: bool) -> String {
+    let node = view.star.node.0;
+    if !several {
+        return format!("star-{node}");
+    }
+    let takes = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let name: String = view.part.name.chars().map(|c| if takes(c) { c } else { '_' }).collect();
+    format!("star-{name}-{node}")
 }

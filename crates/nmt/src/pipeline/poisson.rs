@@ -100,17 +100,9 @@ pub(crate) fn solve_on(
     (part, params): (&MeshPart, &SolveParams),
     observer: &mut dyn FnMut(nmt_mfdm::Event),
 ) -> Result<(PoissonSolution, Option<PoissonErrors>), NmtError> {
-    let source = |p: Point| settings.source.at(p);
-    let boundary = |p: Point| settings.boundary.as_ref().map_or(0.0, |formula| formula.at(p));
-    let fluxes: Vec<_> = subdomain.fluxes.iter().map(|flux| flux.as_ref().map(|q| move |p: Point| q.at(p))).collect();
-    let as_function = |flux| flux as &(dyn Fn(Point) -> f64 + Sync);
-    let poisson = PoissonProblem {
-        source: &source,
-        boundary: &boundary,
-        fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
-        section: &part.section,
-    };
-    let solution = solve_poisson_observed(&poisson, &part.mesh, params, observer).map_err(|error| {
+    let solved =
+        poisson_on(subdomain, settings, part, |poisson| solve_poisson_observed(poisson, &part.mesh, params, observer));
+    let solution = solved.map_err(|error| {
         let fault = datum_fault(problem, subdomain, settings, &error);
         fault.map_or(NmtError::Solve { subdomain: part.name.clone(), source: error }, |f| NmtError::Problem(vec![f]))
     })?;
@@ -122,6 +114,25 @@ pub(crate) fn solve_on(
         None => None,
     };
     Ok((solution, errors))
+}
+
+/// What `work` makes of the Poisson problem of a subdomain.
+pub(crate) fn poisson_on<T>(
+    subdomain: &Subdomain,
+    settings: &PoissonSettings,
+    part: &MeshPart,
+    work: impl FnOnce(&PoissonProblem) -> T,
+) -> T {
+    let source = |p: Point| settings.source.at(p);
+    let boundary = |p: Point| settings.boundary.as_ref().map_or(0.0, |formula| formula.at(p));
+    let fluxes: Vec<_> = subdomain.fluxes.iter().map(|flux| flux.as_ref().map(|q| move |p: Point| q.at(p))).collect();
+    let as_function = |flux| flux as &(dyn Fn(Point) -> f64 + Sync);
+    work(&PoissonProblem {
+        source: &source,
+        boundary: &boundary,
+        fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
+        section: &part.section,
+    })
 }
 
 /// A datum that is not finite, in the terms of the file.

@@ -59,7 +59,7 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "hole",
 ];
 /// The keys of `[[subdomain.hole]]`.
-pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle"];
+pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle", "neumann"];
 /// The keys of `[mesh]`.
 pub(super) const MESH_KEYS: &[&str] = &["method", "elim", "smooth"];
 /// The keys of `[solve]`.
@@ -125,7 +125,7 @@ impl Reader<'_> {
                 }
                 (None, _) if word == "neumann" => {
                     "write it at its edge: in an item of `outline`, { line = true, neumann = \"0\" }, or among the keys of a \
-                     circle, ellipse or rectangle"
+                     circle, ellipse or rectangle, or of a hole for all its edges"
                         .to_owned()
                 }
                 (None, Some(other)) => format!("`{word}` belongs in {other} ({list})"),
