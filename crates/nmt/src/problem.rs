@@ -12,6 +12,7 @@
 mod check;
 mod error;
 mod formula;
+mod habits;
 mod limits;
 mod poisson;
 mod read;
