@@ -13,6 +13,7 @@ mod check;
 mod error;
 mod formula;
 mod grading;
+mod habits;
 mod limits;
 mod poisson;
 mod read;

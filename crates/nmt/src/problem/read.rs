@@ -227,7 +227,11 @@ fn hole(reader: &mut Reader<'_>, mut table: Table<'_, '_>, number: usize) -> (Ho
     table.item = format!("{of}, hole {}", quote(&name));
     reader.known_keys(&table, "[[subdomain.hole]]", HOLE_KEYS);
     let nodes = table.get("nodes").and_then(|value| reader.nodes(&table.item, value));
-    let shape = shape::read(reader, &table, &format!("{name}/"));
+    let flux = shape::flux(reader, &table);
+    let mut shape = shape::read(reader, &table, &format!("{name}/"));
+    // An edge with a flux of its own keeps it.
+    let fluxes = shape.iter_mut().flat_map(|shape| &mut shape.fluxes);
+    fluxes.filter(|own| own.is_none()).for_each(|own| own.clone_from(&flux));
     (HoleDraft { name, item: table.item, nodes, shape, place: table.place }, name_place)
 }
 
