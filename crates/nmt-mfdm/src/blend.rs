@@ -62,7 +62,14 @@ impl NodalPolynomials {
         let n = n_monomials(params.order);
         let n_nodes = surroundings.xy().len();
         let StarParams { order, size, choice, smoothing } = params;
-        let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal: false };
+        let demand = Demand {
+            order,
+            size,
+            smoothing,
+            flattening: smoothing,
+            negative_diagonal: false,
+            slopes: crate::slopes::Slopes::Free,
+        };
         let pieces = map_chunks(0..n_nodes, |piece| {
             let mut finder = StarFinder::new(surroundings, nearest, choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());

@@ -76,7 +76,12 @@ pub(crate) fn solve_discrete(
         let only_interior =
             params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
         let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
-        let stencils = Stencils::new(&surroundings, &nearest, stars, range.clone());
+        // The local equation of a node with a flux is ∇²u = −s there too, its polynomial meeting the flux.
+        let known = |node: NodeId| match params.formulation {
+            Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(metric.stretch())),
+            Formulation::Variational | Formulation::Fem => None,
+        };
+        let stencils = Stencils::meeting(&surroundings, &nearest, stars, range.clone(), known);
         stencils.require(range, mesh.xy(), 1)?;
         if params.formulation == Formulation::Local {
             stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
@@ -131,7 +136,7 @@ pub(crate) fn solve_discrete(
     let Nodal { values, constants, linear } = solve_system(&system, mesh.xy(), &equations, &roles, params.solver)?;
     drop(system);
     let values = match stencils {
-        Some(stencils) => smoothed(&stencils, values),
+        Some(stencils) => smoothed(&stencils, mesh.xy(), values),
         None => values,
     };
     ended(Stage::Solve);
@@ -148,10 +153,11 @@ pub(crate) fn solve_discrete(
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.
-fn smoothed(stencils: &Stencils, parameters: Vec<f64>) -> Vec<f64> {
+fn smoothed(stencils: &Stencils, xy: &[Point], parameters: Vec<f64>) -> Vec<f64> {
     let value = |node: usize| {
         let stencil = stencils.of(NodeId::of(node));
-        stencil.nodes.iter().zip(stencil.row(0)).map(|(other, c)| c * parameters[other.index()]).sum()
+        let sum: f64 = stencil.nodes.iter().zip(stencil.row(0)).map(|(other, c)| c * parameters[other.index()]).sum();
+        sum - stencils.known_share(NodeId::of(node), 0, xy)
     };
     (0..parameters.len()).map(value).collect()
 }

@@ -2,10 +2,11 @@
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::parallel::map_chunks;
+use crate::slopes::{KnownSlopes, gradient_of_monomial};
 use crate::stencils::{StarParams, Stencils};
 use crate::surroundings::Surroundings;
 use nmt_geom::NodeId;
-use nmt_geom::point::sub;
+use nmt_geom::point::{dot, sub};
 use nmt_tri::Mesh;
 use std::collections::BTreeMap;
 
@@ -35,15 +36,21 @@ pub struct UsedStars {
     params: Option<StarParams>, // of no finite element
     first: usize,
     larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that were enlarged for the equations' sake
+    known: BTreeMap<NodeId, KnownSlopes>,
 }
 
 /// Nodes whose stencils are held at a time.
 const BATCH: usize = 1 << 14;
 
 impl UsedStars {
-    /// Stars of all nodes from number `first` on, by `params`, some of them larger.
-    pub(crate) fn new(params: StarParams, first: usize, larger: BTreeMap<NodeId, usize>) -> Self {
-        Self { params: Some(params), first, larger }
+    /// Stars of all nodes from number `first` on, by `params`, some of them larger, some meeting what is `known`.
+    pub(crate) fn new(
+        params: StarParams,
+        first: usize,
+        larger: BTreeMap<NodeId, usize>,
+        known: BTreeMap<NodeId, KnownSlopes>,
+    ) -> Self {
+        Self { params: Some(params), first, larger, known }
     }
 
     /// What is known of every star, shape (n_nodes,), with the `mesh` of the solution; empty for finite elements.
@@ -57,7 +64,8 @@ impl UsedStars {
         let mut all = vec![StarDiagnostics::default(); self.first.min(n_nodes)];
         for first in (self.first..n_nodes).step_by(BATCH) {
             let range = first..(first + BATCH).min(n_nodes);
-            let mut stencils = Stencils::new(&surroundings, &nearest, params, range.clone());
+            let known = |node: NodeId| self.known.get(&node).copied();
+            let mut stencils = Stencils::meeting(&surroundings, &nearest, params, range.clone(), known);
             let larger = self.larger.range(NodeId::of(range.start)..NodeId::of(range.end));
             stencils.replace(&surroundings, &nearest, &larger.map(|(node, size)| (*node, *size)).collect::<Vec<_>>());
             let pieces = map_chunks(range, |piece| {
@@ -71,6 +79,7 @@ impl UsedStars {
 
 fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) -> StarDiagnostics {
     let (stencil, outcome) = (stencils.of(node), stencils.outcome(node));
+    let slopes = stencils.known(node).slopes;
     let places = surroundings.stretched();
     let centre = places[node.index()];
     let n = n_monomials(outcome.order);
@@ -80,6 +89,10 @@ fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) 
         let offset = sub(places[other.index()], centre).map(|v| v / stencil.radius);
         let mut basis = [0.0; MAX_MONOMIALS];
         monomials(offset, outcome.order, &mut basis);
+        // The rows hold for values less the known slope.
+        for m in [row(1, 0), row(0, 1)] {
+            basis[m] -= dot(slopes.known_part(gradient_of_monomial(m)), offset);
+        }
         for m in stencil.first_row()..n {
             let coefficient = stencil.row(m)[position];
             (0..n).for_each(|k| errors[m][k] += coefficient * basis[k]);
@@ -88,7 +101,9 @@ fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) 
     let mut residual = 0.0f64;
     for (m, row) in errors.iter().enumerate().take(n).skip(stencil.first_row()) {
         for (k, value) in row.iter().enumerate().take(n) {
-            residual = residual.max((value - if m == k { 1.0 } else { 0.0 }).abs());
+            let known = slopes.known_part(gradient_of_monomial(k));
+            let exact = f64::from(u8::from(m == k)) - dot(known, gradient_of_monomial(m));
+            residual = residual.max((value - exact).abs());
         }
     }
     let own = stencil.nodes.iter().position(|other| *other == node);

@@ -1,6 +1,7 @@
 //! Fluxes on the boundary: ∂u/∂n = q on the true edge, which the mesh has a polygon for.
 
 use crate::error::MfdmError;
+use crate::slopes::{KnownSlopes, Slopes};
 use nmt_cloud::{Cloud, Section};
 use nmt_curve::{ArcTable, Curve};
 use nmt_geom::point::{cross, distance, dot, lerp, sub};
@@ -32,15 +33,44 @@ pub(crate) struct Sample {
     pub weight: f64,
 }
 
-/// The condition at one node: Σ (n·∇u − q) = 0 over the edges that meet there.
+/// The conditions at one node: n·∇u = q on each of the edges that meet there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeFlux {
     /// The node.
     pub node: NodeId,
-    /// Sum of the outward unit normals.
-    pub normal: [f64; 2],
-    /// Sum of the q.
-    pub q: f64,
+    sides: [Option<Side>; 2],
+}
+
+/// n·∇u = q on one side of a node.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    normal: Point, // outward unit normal
+    q: f64,
+}
+
+/// Sides whose normals differ by less than this sine are one smooth boundary: the gradient from both would be that of
+/// small differences.
+const CORNER_SINE: f64 = 0.5;
+
+impl NodeFlux {
+    /// What the conditions say of the gradient in coordinates stretched by `stretch`: at a corner all of it, otherwise
+    /// its component along the normal.
+    pub fn known(&self, stretch: [f64; 2]) -> KnownSlopes {
+        let sides = self.sides.iter().flatten();
+        if let [Some(a), Some(b)] = self.sides {
+            let sine = cross(a.normal, b.normal);
+            if sine.abs() > CORNER_SINE {
+                let (p, q) = (a.normal.map(|c| c * b.q / sine), b.normal.map(|c| c * a.q / sine));
+                let gradient = [q[1] - p[1], p[0] - q[0]];
+                return KnownSlopes { slopes: Slopes::Known, gradient: [0, 1].map(|d| gradient[d] / stretch[d]) };
+            }
+        }
+        // ∂/∂x = stretch_x·∂/∂X, so that n·∇u is a slope across in stretched coordinates too.
+        let across = [0, 1].map(|d| stretch[d] * sides.clone().map(|side| side.normal[d]).sum::<f64>());
+        let (q, square) = (sides.map(|side| side.q).sum::<f64>(), dot(across, across).max(f64::MIN_POSITIVE));
+        let along = [-across[1], across[0]].map(|c| c / square.sqrt());
+        KnownSlopes { slopes: Slopes::Along(along), gradient: across.map(|c| c * q / square) }
+    }
 }
 
 /// All fluxes of a problem.
@@ -80,10 +110,10 @@ impl Fluxes {
             for (node, s) in [(segment.from, 0.0), (segment.to, 1.0)] {
                 if free.binary_search(&node).is_ok() {
                     let (at, tangent) = (cloud.xy()[node.index()], piece.direction(s));
-                    let own = at_nodes.entry(node).or_insert(NodeFlux { node, normal: [0.0; 2], q: 0.0 });
+                    let own = at_nodes.entry(node).or_insert(NodeFlux { node, sides: [None; 2] });
                     // The material is on the left.
-                    own.normal = [own.normal[0] + tangent[1], own.normal[1] - tangent[0]];
-                    own.q += finite(flux, at)?;
+                    let side = Side { normal: [tangent[1], -tangent[0]], q: finite(flux, at)? };
+                    own.sides[usize::from(own.sides[0].is_some())] = Some(side);
                 }
             }
         }

@@ -34,6 +34,9 @@ pub mod exact;
 mod flux;
 mod galerkin;
 mod gauss;
+#[cfg(feature = "kernels")]
+#[doc(hidden)]
+pub mod kernels;
 mod local;
 mod mend;
 mod mwls;
@@ -45,6 +48,7 @@ mod post;
 mod problem;
 mod repair;
 mod shapes;
+mod slopes;
 mod solution;
 mod solve;
 mod solver;

@@ -1,16 +1,19 @@
-//! The local formulation: one equation a node, ∇²u = −s inside, n·∇u = q where a flux is given; paper, eq. (17).
+//! The local formulation: one equation a node, ∇²u = −s inside and where a flux is given; paper, eq. (17).
 
 use crate::assembly::{Setting, dirichlet_row};
 use crate::basis::row;
 use crate::error::MfdmError;
 use crate::stencils::Stencils;
-use crate::system::{Equation, LinearSystem, Roles, RowSum, SplitRow};
+use crate::system::{Equation, LinearSystem, RowSum, SplitRow};
 use nmt_geom::NodeId;
 
-/// Collocates −∇²u = s at every interior node and n·∇u = q at those with a flux, each equation multiplied by its star's
-/// radius to the power of its derivatives, so that all rows are of one size whatever the spacing.
+/// Collocates −∇²u = s at every unknown node, times the square of its star's radius, so that all rows are of one size
+/// whatever the spacing. The polynomial of a node with a flux meets n·∇u = q.
+///
+/// The flux itself collocated from a one-sided star is no equation to trust: its own coefficient may be small or of the
+/// wrong sign, and on irregular clouds the error then scatters by two orders of magnitude and need not fall.
 pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
-    let Setting { mesh, stencils, roles, source, fluxes, .. } = setting;
+    let Setting { mesh, stencils, roles, source, .. } = setting;
     LinearSystem::of_pieces(roles, |piece| {
         // Only smoothing polynomials have Dirichlet rows, which are summed.
         let mut sum = RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
@@ -19,35 +22,24 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
             if let Some(equation) = dirichlet_row(setting, node, &mut sum)? {
                 return Ok(equation);
             }
-            let radius = stencils.of(node).radius;
-            if let Some(flux) = fluxes.of_node(node) {
-                return Ok(Equation { row: slope_row(stencils, roles, node, flux.normal), rhs: flux.q * radius });
+            let stencil = stencils.of(node);
+            let mut equation = Equation { row: SplitRow::default(), rhs: source.at(mesh.xy()[node.index()])? };
+            equation.rhs *= stencil.radius * stencil.radius;
+            // The row holds for u less the slope that a flux makes known.
+            for (m, stretch) in [row(2, 0), row(0, 2)].into_iter().zip(stencils.metric().stretch()) {
+                equation.rhs -= stretch * stretch * stencils.known_share(node, m, mesh.xy());
             }
-            let rhs = source.at(mesh.xy()[node.index()])? * radius * radius;
-            Ok(Equation { row: laplacian_row(stencils, roles, node), rhs })
+            laplacian(stencils, node).for_each(|(other, c)| equation.row.add(roles.of(other), -c));
+            Ok(equation)
         };
         LinearSystem::of(roles, piece.map(equation))
     })
 }
 
-fn laplacian_row(stencils: &Stencils, roles: &Roles, node: NodeId) -> SplitRow {
+/// What each node of the star contributes to ∇²u at its centre, times the square of the star's radius.
+fn laplacian(stencils: &Stencils, node: NodeId) -> impl Iterator<Item = (NodeId, f64)> {
     let stencil = stencils.of(node);
     let (xx, yy) = (stencil.row(row(2, 0)), stencil.row(row(0, 2)));
     let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch * stretch);
-    let mut split = SplitRow::default();
-    for (k, &other) in stencil.nodes.iter().enumerate() {
-        split.add(roles.of(other), -(xx[k] * s_x + yy[k] * s_y));
-    }
-    split
-}
-
-fn slope_row(stencils: &Stencils, roles: &Roles, node: NodeId, normal: [f64; 2]) -> SplitRow {
-    let stencil = stencils.of(node);
-    let (by_x, by_y) = (stencil.row(row(1, 0)), stencil.row(row(0, 1)));
-    let [s_x, s_y] = stencils.metric().stretch();
-    let mut split = SplitRow::default();
-    for (k, &other) in stencil.nodes.iter().enumerate() {
-        split.add(roles.of(other), normal[0] * s_x * by_x[k] + normal[1] * s_y * by_y[k]);
-    }
-    split
+    stencil.nodes.iter().zip(xx.iter().zip(yy)).map(move |(&other, (xx, yy))| (other, xx * s_x + yy * s_y))
 }

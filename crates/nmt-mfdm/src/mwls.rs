@@ -1,6 +1,7 @@
 //! Moving weighted least squares on one star: values to the polynomial that fits them, by QR with a rank test.
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials};
+use crate::slopes::Slopes;
 use crate::weight::weight;
 use nmt_geom::Point;
 use nmt_geom::point::{distance_squared, sub};
@@ -24,7 +25,8 @@ const ON_ONE_LINE_REL: f64 = 1.0e-6;
 pub struct Mwls {
     order: usize,
     radius: f64,
-    first: usize, // monomial of the first column: 1 where the centre's value is met, else 0
+    first: usize,   // monomial of the first column: 1 where the centre's value is met, else 0
+    slopes: Slopes, // known at the centre: their columns are left out
     n_columns: usize,
     n_rows: usize,                  // nodes without a centre that is met
     a: Vec<f64>,                    // Householder vectors below R, column by column, shape (n_columns, n_rows)
@@ -51,10 +53,25 @@ impl Mwls {
         order: usize,
         g: f64,
     ) -> f64 {
+        self.factorise_meeting(points, centre_at, met, Slopes::Free, order, g)
+    }
+
+    /// As [`Self::factorise`], for values less the slope that is known: [`Self::fit`] and [`Self::rows`] then give what
+    /// is free of the gradient.
+    pub(crate) fn factorise_meeting(
+        &mut self,
+        points: impl Iterator<Item = Point>,
+        centre_at: Point,
+        met: Option<usize>,
+        slopes: Slopes,
+        order: usize,
+        g: f64,
+    ) -> f64 {
         self.order = order;
+        self.slopes = slopes;
         self.centre = met.unwrap_or(usize::MAX);
         self.first = usize::from(met.is_some());
-        self.n_columns = n_monomials(order) - self.first;
+        self.n_columns = (n_monomials(order) - self.first).saturating_sub(2 - slopes.n_free());
         self.others.clear();
         self.root_weight.clear();
         self.work.clear();
@@ -72,38 +89,33 @@ impl Mwls {
         self.radius = radius_squared.sqrt();
         self.n_rows = self.others.len();
         self.condition = f64::INFINITY;
-        if self.n_rows < n_columns || self.radius.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+        if n_columns == 0
+            || self.n_rows < n_columns
+            || self.radius.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)
+        {
             return self.condition;
         }
         self.a.clear();
         self.a.resize(n_columns * self.n_rows, 0.0);
-        let mut basis = [0.0; MAX_MONOMIALS];
+        let (mut basis, mut extent) = ([0.0; MAX_MONOMIALS], [0.0; 2]);
         for i in 0..self.n_rows {
             let scaled = [self.work[2 * i] / self.radius, self.work[2 * i + 1] / self.radius];
             let root = weight(scaled[0] * scaled[0] + scaled[1] * scaled[1], g, order).sqrt();
             self.root_weight.push(root);
             monomials(scaled, order, &mut basis);
+            extent = [0, 1].map(|d| extent[d] + root * root * scaled[d] * scaled[d]);
+            slopes.restrict(&mut basis);
             for m in 0..n_columns {
                 self.a[m * self.n_rows + i] = root * basis[m + first];
             }
         }
-        if order > 0 && self.is_on_one_line() {
+        if order > 0 && is_on_one_line(extent) {
             return self.condition;
         }
         self.scale_columns(n_columns);
         self.householder(n_columns);
         self.condition = self.condition_of_r(n_columns);
         self.condition
-    }
-
-    /// True where all nodes lie on one line along an axis, up to rounding: scaling the columns would make a coordinate of
-    /// that rounding.
-    fn is_on_one_line(&self) -> bool {
-        let square = |m: usize| {
-            dot(&self.a[m * self.n_rows..(m + 1) * self.n_rows], &self.a[m * self.n_rows..(m + 1) * self.n_rows])
-        };
-        let (h, k) = (square(1 - self.first), square(2 - self.first));
-        h.min(k) <= ON_ONE_LINE_REL * ON_ONE_LINE_REL * h.max(k)
     }
 
     fn scale_columns(&mut self, n_columns: usize) {
@@ -186,6 +198,7 @@ impl Mwls {
             let known: f64 = (i + 1..n_columns).map(|j| self.r(i, j) * out[j + first] / self.scale[j]).sum();
             out[i + first] = (self.work[i] - known) / self.diagonal[i] * self.scale[i];
         }
+        self.slopes.spread(&mut out[..n_monomials(self.order)], 1, 1);
     }
 
     /// Monomial of the first of the [`Self::rows`]: 1 where the centre's value is met, since its own row says nothing
@@ -211,7 +224,7 @@ impl Mwls {
             }
         }
         let start = out.len();
-        out.resize(start + n_columns * n_star, 0.0);
+        out.resize(start + (n_monomials(self.order) - self.first) * n_star, 0.0);
         let out = &mut out[start..];
         for i in (0..n_columns).rev() {
             // Row i of R⁻¹Qᵀ in place of column i of Q.
@@ -236,7 +249,14 @@ impl Mwls {
                 row[self.centre] = -sum;
             }
         }
+        self.slopes.spread(out, (1 - self.first) * n_star, n_star);
     }
+}
+
+/// True where all nodes lie on one line along an axis, up to rounding, by the squares of their weighted coordinates:
+/// scaling the columns would make a coordinate of that rounding.
+fn is_on_one_line([h, k]: [f64; 2]) -> bool {
+    h.min(k) <= ON_ONE_LINE_REL * ON_ONE_LINE_REL * h.max(k)
 }
 
 /// Scalar product in four partial sums, so that it vectorises; the same on every machine.

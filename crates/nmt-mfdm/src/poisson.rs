@@ -65,8 +65,8 @@ pub struct ErrorNorms {
 ///
 /// Dirichlet values are those at the nodes; a node between an edge with a value and one with a flux has the value. In the
 /// variational form fluxes are integrated over the true edges, and the weak form over the slivers between them and the
-/// polygon too; in the local form n·∇u = q is collocated at the nodes, with the true normal (at a vertex between two such
-/// edges the sum of both).
+/// polygon too; in the local form ∇²u = f holds at nodes with a flux as it does inside, and their polynomials meet
+/// n·∇u = q with the true normal \[D15\] (at a corner between two such edges both, at a smoother vertex their sum).
 ///
 /// # Errors
 /// [`MfdmError`] where a datum is not finite, no edge has a value, or as for torsion ([`crate::solve`]).

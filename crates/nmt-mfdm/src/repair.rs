@@ -2,6 +2,7 @@
 
 use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
 use crate::mwls::{MAX_CONDITION, Mwls};
+use crate::slopes::Slopes;
 use crate::star::{StarChoice, StarFinder, default_star};
 use nmt_geom::NodeId;
 
@@ -17,6 +18,9 @@ const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
 /// the weight, the polynomial falls from 1 to 0 on the way to it, and what the others leave of the second derivative along
 /// that way may be of either sign. Rows reproduce polynomials whatever the weights.
 const FLATTER: [f64; 3] = [0.25, 0.5, 1.0];
+
+/// From this order on stars take whole shells of equally distant nodes \[D16\].
+const WHOLE_SHELLS: usize = 4;
 
 /// A star is enlarged to these parts of its size, in eighths, before the order is lowered.
 const ENLARGEMENTS: [usize; 6] = [8, 9, 10, 12, 16, 24];
@@ -55,6 +59,8 @@ pub(crate) struct Demand {
     /// The node's own coefficient in its ∇² row, at order 2, shall be negative: with the wrong sign the row couples the
     /// node to itself as a source, and the local system loses its diagonal.
     pub negative_diagonal: bool,
+    /// What is known of the gradient at the node.
+    pub slopes: Slopes,
 }
 
 /// Finds the star of `node` that carries what is demanded, or a polynomial of the highest lower order; its nodes into
@@ -134,13 +140,17 @@ fn try_star(
     wanted: usize,
     star: &mut Vec<NodeId>,
 ) -> Candidate {
-    let hidden = finder.find(node, wanted, star);
+    let hidden = if demand.order < WHOLE_SHELLS {
+        finder.find(node, wanted, star)
+    } else {
+        finder.find_shells(node, wanted, star)
+    };
     let places = finder.surroundings().stretched();
     let condition = match star.iter().position(|n| *n == node) {
         Some(centre) => {
             let met = (demand.smoothing == 0.0).then_some(centre);
             let points = star.iter().map(|n| places[n.index()]);
-            mwls.factorise(points, places[node.index()], met, demand.order, demand.flattening)
+            mwls.factorise_meeting(points, places[node.index()], met, demand.slopes, demand.order, demand.flattening)
         }
         None => f64::INFINITY,
     };

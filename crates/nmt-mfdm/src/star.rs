@@ -37,6 +37,9 @@ const SECTORS: usize = 8;
 /// A balanced star is chosen among so many times its size of nearest nodes.
 const CANDIDATES: usize = 4;
 
+/// Nodes of a square grid at one distance, within 7 spacings; of other grids there are fewer.
+const LARGEST_SHELL: usize = 12;
+
 /// Nodes in a star by default, the centre included: 6, 9, 20, 30 for orders 1 to 4.
 pub fn default_star(order: usize) -> usize {
     match order {
@@ -55,12 +58,21 @@ pub struct StarFinder<'a> {
     scratch: Scratch,
     hidden: Vec<f64>, // distance² of the hidden nodes met
     candidates: Vec<NodeId>,
+    distances: Vec<f64>, // squared
 }
 
 impl<'a> StarFinder<'a> {
     /// `nearest` is that of `surroundings`.
     pub fn new(surroundings: &'a Surroundings<'a>, nearest: &'a Nearest<'a>, choice: StarChoice) -> Self {
-        Self { surroundings, nearest, choice, scratch: Scratch::default(), hidden: Vec::new(), candidates: Vec::new() }
+        Self {
+            surroundings,
+            nearest,
+            choice,
+            scratch: Scratch::default(),
+            hidden: Vec::new(),
+            candidates: Vec::new(),
+            distances: Vec::new(),
+        }
     }
 
     pub(crate) fn surroundings(&self) -> &'a Surroundings<'a> {
@@ -82,6 +94,24 @@ impl<'a> StarFinder<'a> {
         let centre = surroundings.stretched()[node.index()];
         let all_visible = |radius: f64| surroundings.all_visible(surroundings.xy()[node.index()], radius);
         self.find_seen(centre, size, all_visible, |other| surroundings.sees(node, other), out)
+    }
+
+    /// As [`Self::find`], with all nodes that are as far away as the farthest: the star of an interior node of a regular
+    /// grid is then as symmetric as the grid \[D16\].
+    pub(crate) fn find_shells(&mut self, node: NodeId, size: usize, out: &mut Vec<NodeId>) -> usize {
+        let places = self.surroundings.stretched();
+        let skipped = self.find(node, size + LARGEST_SHELL, out);
+        if self.choice == StarChoice::Balanced || out.len() <= size {
+            return self.find(node, size, out);
+        }
+        let distance = |other: &NodeId| distance_squared(places[other.index()], places[node.index()]);
+        let distances = &mut self.distances;
+        distances.clear();
+        distances.extend(out.iter().map(distance));
+        let (_, rim, _) = distances.select_nth_unstable_by(size - 1, f64::total_cmp);
+        let limit = *rim * (1.0 + SAME_DISTANCE_REL);
+        out.retain(|other| distance(other) <= limit);
+        if skipped == 0 { 0 } else { self.hidden.iter().filter(|d2| **d2 < *rim).count() }
     }
 
     /// The star of `size` visible nodes of the place `at` (user's coordinates), which need not be a node.

@@ -6,9 +6,11 @@ use crate::error::MfdmError;
 use crate::mwls::Mwls;
 use crate::parallel::take_pieces;
 use crate::repair::{Demand, StarOutcome, sound_star};
+use crate::slopes::{KnownSlopes, Slopes};
 use crate::star::{StarChoice, StarFinder};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
+use nmt_geom::point::{dot, sub};
 use nmt_geom::{NodeId, Point};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -89,6 +91,7 @@ pub struct Stencils {
     rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<StarOutcome>,
+    known: Vec<(NodeId, KnownSlopes)>, // of nodes whose gradient is known in part, ascending
 }
 
 /// The stencil of one node.
@@ -122,6 +125,18 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
+        Self::meeting(surroundings, nearest, params, range, |_| None)
+    }
+
+    /// As [`Self::new`], the polynomials meeting what is `known` of the gradient at their nodes: their rows hold for values
+    /// less the known slope.
+    pub(crate) fn meeting(
+        surroundings: &Surroundings,
+        nearest: &Nearest,
+        params: StarParams,
+        range: Range<usize>,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+    ) -> Self {
         let metric = surroundings.metric();
         let first = range.start;
         let part = |piece: Range<usize>| {
@@ -130,10 +145,13 @@ impl Stencils {
             let mut part = Self::empty(params, metric, piece.start);
             let StarParams { order, size, smoothing, .. } = params;
             for node in piece {
-                let negative_diagonal = node >= surroundings.n_boundary();
-                let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
+                let known = known(NodeId::of(node));
+                let negative_diagonal = node >= surroundings.n_boundary() || known.is_some();
+                let slopes = known.map_or(Slopes::Free, |known| known.slopes);
+                let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes };
                 let outcome = sound_star(&mut finder, &mut mwls, NodeId::of(node), demand, &mut star);
                 part.push(&star, &mut mwls, outcome);
+                part.known.extend(known.map(|known| (NodeId::of(node), known)));
             }
             part
         };
@@ -146,6 +164,7 @@ impl Stencils {
             all.rows.extend(part.rows);
             all.radii.extend(part.radii);
             all.outcomes.extend(part.outcomes);
+            all.known.extend(part.known);
         });
         all
     }
@@ -182,7 +201,8 @@ impl Stencils {
         for &(node, size) in stars {
             let k = node.index() - self.first;
             let negative_diagonal = node.index() >= surroundings.n_boundary();
-            let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal };
+            let demand =
+                Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes: Slopes::Free };
             let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
             self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
             // What was appended takes the place of the node's own.
@@ -237,12 +257,16 @@ impl Stencils {
             rows: Vec::new(),
             radii: Vec::new(),
             outcomes: Vec::new(),
+            known: Vec::new(),
         }
     }
 
     /// How to find these stars again, of which `larger` were enlarged.
     pub(crate) fn used(&self, larger: BTreeMap<NodeId, usize>) -> UsedStars {
-        if self.params.order == 0 { UsedStars::default() } else { UsedStars::new(self.params, self.first, larger) }
+        if self.params.order == 0 {
+            return UsedStars::default();
+        }
+        UsedStars::new(self.params, self.first, larger, self.known.iter().copied().collect())
     }
 
     /// The metric of their coordinates.
@@ -271,6 +295,25 @@ impl Stencils {
             first_row: self.params.first_row(),
             rows: &self.rows[n_rows * star.start..n_rows * star.end],
         }
+    }
+
+    /// What the polynomial of a node meets of its gradient.
+    pub(crate) fn known(&self, node: NodeId) -> KnownSlopes {
+        self.known
+            .binary_search_by_key(&node, |(node, _)| *node)
+            .map_or_else(|_| KnownSlopes::default(), |k| self.known[k].1)
+    }
+
+    /// What the known slope of a node adds to row `m` of its stencil, times the values: c·(u_k − g·(x_k − x)) summed.
+    pub(crate) fn known_share(&self, node: NodeId, m: usize, xy: &[Point]) -> f64 {
+        let KnownSlopes { slopes, gradient } = self.known(node);
+        if slopes == Slopes::Free {
+            return 0.0;
+        }
+        let stencil = self.of(node);
+        let place = |node: NodeId| self.metric.stretched(xy[node.index()]);
+        let slope = |other: &NodeId| dot(gradient, sub(place(*other), place(node)));
+        stencil.nodes.iter().zip(stencil.row(m)).map(|(other, c)| c * slope(other)).sum()
     }
 
     /// What became of the stars.

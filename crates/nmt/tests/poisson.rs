@@ -129,8 +129,7 @@ fn errors_fall_at_the_promised_order() {
             (Formulation::Variational, 2, 1.8),
             (Formulation::Local, 2, 1.8),
             (Formulation::Variational, 4, 3.5),
-            // 3.4 measured on the two sections that are resolved at once, 3.6 and more on the others.
-            (Formulation::Local, 4, 3.2),
+            (Formulation::Local, 4, 3.5),
             (Formulation::Fem, 1, 1.8),
         ] {
             let of = |n: usize, irregularity: f64| {
@@ -166,17 +165,17 @@ fn shipped(nodes: [usize; 2], irregularity: &str, options: Overrides) -> Poisson
 
 #[test]
 fn fluxes_of_the_shipped_problem_are_met_in_every_formulation() {
-    // On the irregular cloud the local form scatters with the seed (docs/poisson.md): there only the size of its error is held.
     for (formulation, order, least, within) in [
         (Formulation::Variational, 2, 1.8, 5e-6),
         (Formulation::Variational, 4, 3.5, 2e-7),
-        (Formulation::Local, 2, 1.8, 1e-2),
-        (Formulation::Local, 4, 3.5, 1e-3),
+        (Formulation::Local, 2, 1.8, 5e-5),
+        (Formulation::Local, 4, 3.5, 2e-8),
         (Formulation::Fem, 1, 1.8, 2e-4),
     ] {
         let of = |nodes, irregularity| errors(&shipped(nodes, irregularity, options(formulation, order)));
-        let [coarse, fine] = [[21, 23], [81, 89]].map(|nodes| of(nodes, "0"));
-        let observed = [0, 1].map(|k| (coarse[k] / fine[k]).log2() / 2.0);
+        // From 8 times the spacing: the errors of order 4 change sign between, and single pairs of densities mislead.
+        let [coarse, fine] = [[11, 12], [81, 89]].map(|nodes| of(nodes, "0"));
+        let observed = [0, 1].map(|k| (coarse[k] / fine[k]).log2() / 3.0);
         assert!(observed[1] > least, "{formulation:?} {order}: {coarse:?} {fine:?}, order {observed:.2?}");
         let irregular = of([41, 45], "0.25");
         assert!(irregular[1] < within, "{formulation:?} {order}: {irregular:?}");
