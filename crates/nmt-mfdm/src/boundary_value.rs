@@ -3,7 +3,7 @@
 use crate::assembly::Frame;
 use crate::blend::NodalPolynomials;
 use crate::circulation::hole_equations;
-use crate::diagnostics::{StarDiagnostics, diagnose};
+use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
@@ -25,6 +25,7 @@ use crate::{galerkin, local, variational};
 use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, NodeTris};
+use std::collections::BTreeMap;
 
 /// Gauss points that integrate a source that is not constant: exact to degree 4 for orders 1 and 2, to degree 6 above.
 const SOURCE_POINTS: [usize; 2] = [6, 12];
@@ -48,7 +49,7 @@ pub(crate) struct Solved {
     pub linear: LinearSolve,
     pub unknowns: usize,
     pub stars: StarReport,
-    pub diagnostics: Vec<StarDiagnostics>,
+    pub used_stars: UsedStars,
 }
 
 /// Solves a problem and recovers the field.
@@ -77,7 +78,8 @@ pub(crate) fn solve_discrete(
     let source_rule = source_rule(params);
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
     let mended = mended_system(frame, around, params, &rule, &mut stencils)?;
-    let (stars, diagnostics) = (stencils.report(), diagnose(&surroundings, &stencils));
+    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
+    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
     let setting = frame.with(&stencils);
     let space = TrialSpace {
         kind: params.trial,
@@ -122,7 +124,7 @@ pub(crate) fn solve_discrete(
             StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
         NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
-    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, diagnostics })
+    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -215,6 +217,13 @@ fn stencils_of_equations(
     Ok(stencils)
 }
 
+/// A system whose soft nodes are mended.
+struct Mended {
+    system: LinearSystem,
+    /// Nodes in the stars that were enlarged.
+    larger: BTreeMap<NodeId, usize>,
+}
+
 /// The system of hats on blends, with the stars of soft nodes mended; `None` for all other equations.
 fn mended_system(
     frame: Frame,
@@ -222,7 +231,7 @@ fn mended_system(
     params: &SolveParams,
     rule: &Rule,
     stencils: &mut Stencils,
-) -> Result<Option<LinearSystem>, MfdmError> {
+) -> Result<Option<Mended>, MfdmError> {
     if !is_mended(params) {
         return Ok(None);
     }
@@ -230,9 +239,9 @@ fn mended_system(
     let mut system = variational::assemble(&frame.with(stencils), &weak)?;
     drop(weak);
     let around = (around.surroundings, around.nearest);
-    mend(frame, around, rule, stencils, &mut system)?;
+    let larger = mend(frame, around, rule, stencils, &mut system)?;
     steady(frame, around, params.order, &mut system);
-    Ok(Some(system))
+    Ok(Some(Mended { system, larger }))
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.

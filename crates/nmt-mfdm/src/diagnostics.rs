@@ -2,11 +2,13 @@
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::parallel::map_chunks;
-use crate::slopes::gradient_of_monomial;
-use crate::stencils::Stencils;
+use crate::slopes::{KnownSlopes, gradient_of_monomial};
+use crate::stencils::{StarParams, Stencils};
 use crate::surroundings::Surroundings;
 use nmt_geom::NodeId;
 use nmt_geom::point::{dot, sub};
+use nmt_tri::Mesh;
+use std::collections::BTreeMap;
 
 /// The star of one node in the equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,18 +30,51 @@ pub struct StarDiagnostics {
     pub residual: f64,
 }
 
-/// The stars of all nodes, shape (n_nodes,); empty for finite elements.
-pub(crate) fn diagnose(surroundings: &Surroundings, stencils: &Stencils) -> Vec<StarDiagnostics> {
-    if stencils.order() == 0 {
-        return Vec::new();
+/// Which stars the equations of a solution were made from: enough to find them again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UsedStars {
+    params: Option<StarParams>, // of no finite element
+    first: usize,
+    larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that were enlarged for the equations' sake
+    known: BTreeMap<NodeId, KnownSlopes>,
+}
+
+/// Nodes whose stencils are held at a time.
+const BATCH: usize = 1 << 14;
+
+impl UsedStars {
+    /// Stars of all nodes from number `first` on, by `params`, some of them larger, some meeting what is `known`.
+    pub(crate) fn new(
+        params: StarParams,
+        first: usize,
+        larger: BTreeMap<NodeId, usize>,
+        known: BTreeMap<NodeId, KnownSlopes>,
+    ) -> Self {
+        Self { params: Some(params), first, larger, known }
     }
-    let range = stencils.range();
-    let mut all = vec![StarDiagnostics::default(); range.start];
-    let pieces = map_chunks(range, |piece| {
-        piece.map(|node| diagnose_one(surroundings, stencils, NodeId::of(node))).collect::<Vec<_>>()
-    });
-    all.extend(pieces.into_iter().flatten());
-    all
+
+    /// What is known of every star, shape (n_nodes,), with the `mesh` of the solution; empty for finite elements.
+    ///
+    /// The stars are found again, in the time that they took: a solution of 10⁶ nodes would keep 50 MB for few readers.
+    pub fn diagnostics(&self, mesh: &Mesh) -> Vec<StarDiagnostics> {
+        let Some(params) = self.params else { return Vec::new() };
+        let surroundings = Surroundings::new(mesh.cloud());
+        let nearest = surroundings.nearest();
+        let n_nodes = mesh.cloud().n_nodes();
+        let mut all = vec![StarDiagnostics::default(); self.first.min(n_nodes)];
+        for first in (self.first..n_nodes).step_by(BATCH) {
+            let range = first..(first + BATCH).min(n_nodes);
+            let known = |node: NodeId| self.known.get(&node).copied();
+            let mut stencils = Stencils::meeting(&surroundings, &nearest, params, range.clone(), known, &mut |_| {});
+            let larger = self.larger.range(NodeId::of(range.start)..NodeId::of(range.end));
+            stencils.replace(&surroundings, &nearest, &larger.map(|(node, size)| (*node, *size)).collect::<Vec<_>>());
+            let pieces = map_chunks(range, |piece| {
+                piece.map(|node| diagnose_one(&surroundings, &stencils, NodeId::of(node))).collect::<Vec<_>>()
+            });
+            all.extend(pieces.into_iter().flatten());
+        }
+        all
+    }
 }
 
 fn diagnose_one(surroundings: &Surroundings, stencils: &Stencils, node: NodeId) -> StarDiagnostics {

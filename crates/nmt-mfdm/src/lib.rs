@@ -34,6 +34,9 @@ pub mod exact;
 mod flux;
 mod galerkin;
 mod gauss;
+#[cfg(feature = "kernels")]
+#[doc(hidden)]
+pub mod kernels;
 mod local;
 mod mend;
 mod mwls;
@@ -62,7 +65,7 @@ mod weight;
 
 pub use basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
 pub use blend::{FieldValue, NodalPolynomials, barycentric_gradients};
-pub use diagnostics::StarDiagnostics;
+pub use diagnostics::{StarDiagnostics, UsedStars};
 pub use edge_stress::{Circulation, EdgePoint, EdgeStress, circulations, edge_stresses};
 pub use error::MfdmError;
 pub use gauss::{GAUSS_POINTS, Rule, six_points, three_points};

@@ -17,6 +17,7 @@ use crate::variational::{EquationMaker, hat_energy};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
+use std::collections::BTreeMap;
 
 /// Least share of the linear elements' own coefficient.
 const SOFT: f64 = 0.5;
@@ -24,7 +25,8 @@ const SOFT: f64 = 0.5;
 /// Times that stars are enlarged, by half each time.
 const ROUNDS: usize = 3;
 
-/// Enlarges the stars of soft nodes, and of those beside them, and makes the equations that they enter anew.
+/// Enlarges the stars of soft nodes, and makes the equations that their polynomials enter anew; tells how many nodes were
+/// asked for at last for each star that was enlarged, by node.
 ///
 /// # Errors
 /// As the equations have them.
@@ -34,30 +36,32 @@ pub(crate) fn mend(
     rule: &Rule,
     stencils: &mut Stencils,
     system: &mut LinearSystem,
-) -> Result<(), MfdmError> {
+) -> Result<BTreeMap<NodeId, usize>, MfdmError> {
+    let mut sizes = BTreeMap::new();
+    let mut soft = soft_nodes(frame, system, 0..system.n());
     for _ in 0..ROUNDS {
-        let soft = soft_nodes(frame, system);
         if soft.is_empty() {
             break;
         }
-        stencils.enlarge(around.0, around.1, &soft);
+        let larger: Vec<(NodeId, usize)> = soft.iter().map(|&node| (node, stencils.half_as_many_again(node))).collect();
+        stencils.replace(around.0, around.1, &larger);
+        sizes.extend(larger);
         let setting: Setting = frame.with(stencils);
         let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
         let mut maker = EquationMaker::new(&setting, &weak);
-        let anew = touched(frame, &soft).into_iter().map(|k| Ok((k, maker.of(k)?)));
+        let touched = touched(frame, &soft);
+        let anew = touched.iter().map(|&k| Ok((k, maker.of(k)?)));
         system.replace(&anew.collect::<Result<Vec<_>, MfdmError>>()?);
+        soft = soft_nodes(frame, system, touched.into_iter());
     }
-    Ok(())
+    Ok(sizes)
 }
 
-/// The nodes whose own coefficient is below [`SOFT`] of what linear elements have, ascending.
-fn soft_nodes(frame: Frame, system: &LinearSystem) -> Vec<NodeId> {
-    let is_soft = |&k: &usize| {
-        let row = system.matrix.row(k);
-        let own = row.columns.binary_search(&(k as u32)).map_or(0.0, |entry| row.values[entry]);
-        own < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k))
-    };
-    (0..system.n()).filter(is_soft).map(|k| frame.roles.node(k)).collect()
+/// The nodes among `unknowns` (ascending) whose own coefficient is below [`SOFT`] of what linear elements have.
+fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
+    let is_soft =
+        |k: &usize| system.matrix.diagonal(*k) < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(*k));
+    unknowns.filter(is_soft).map(|k| frame.roles.node(k)).collect()
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.

@@ -2,7 +2,7 @@
 
 use crate::blend::{FieldValue, NodalPolynomials};
 use crate::boundary_value::{Discrete, solve_discrete};
-use crate::diagnostics::StarDiagnostics;
+use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::{Flux, Fluxes};
 use crate::gauss::{Rule, seven_points};
@@ -44,8 +44,8 @@ pub struct PoissonSolution {
     pub linear: LinearSolve,
     /// What became of the stars of the equations.
     pub stars: StarReport,
-    /// The star of each node in the equations.
-    pub star_diagnostics: Vec<StarDiagnostics>,
+    /// The star of each node in the equations, to be looked at.
+    pub used_stars: UsedStars,
 }
 
 /// Errors of a solution against the exact one, or of its gradient; below, u stands for either.
@@ -115,7 +115,7 @@ pub fn solve_poisson_observed(
         unknowns: solved.unknowns,
         linear: solved.linear,
         stars: solved.stars,
-        star_diagnostics: solved.diagnostics,
+        used_stars: solved.used_stars,
     })
 }
 

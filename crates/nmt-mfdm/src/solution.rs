@@ -1,7 +1,7 @@
 //! What a solution holds: nodal values, the recovered field, results, diagnostics.
 
 use crate::blend::{FieldValue, NodalPolynomials};
-use crate::diagnostics::StarDiagnostics;
+use crate::diagnostics::UsedStars;
 use crate::post::{Extreme, Stress};
 use crate::problem::HoleCondition;
 use crate::solver::LinearSolve;
@@ -42,8 +42,8 @@ pub struct TorsionSolution {
     pub stars: StarReport,
     /// What became of the stars of the recovery.
     pub recovery_stars: StarReport,
-    /// The star of each node in the equations, shape (n_nodes,); empty for finite elements.
-    pub star_diagnostics: Vec<StarDiagnostics>,
+    /// The star of each node in the equations, to be looked at.
+    pub used_stars: UsedStars,
 }
 
 /// One hole in a solution.

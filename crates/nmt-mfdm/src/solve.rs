@@ -123,7 +123,7 @@ fn results(problem: &TorsionProblem, mesh: &Mesh, solved: Solved) -> TorsionSolu
         linear: solved.linear,
         stars: solved.stars,
         recovery_stars: field.report(),
-        star_diagnostics: solved.diagnostics,
+        used_stars: solved.used_stars,
         field,
     }
 }

@@ -5,6 +5,8 @@ mod amg;
 mod choice;
 pub(crate) mod csr;
 pub(crate) mod direct;
+#[cfg(feature = "kernels")]
+pub(crate) mod kernels;
 mod krylov;
 mod ordering;
 mod vector;

@@ -1,6 +1,7 @@
-//! Stencils: stars with their coefficient rows, for many nodes; and the diagnostics of all stars.
+//! Stencils: stars with their coefficient rows, for many nodes.
 
 use crate::basis::n_monomials;
+use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::mwls::Mwls;
 use crate::parallel::take_pieces;
@@ -12,6 +13,7 @@ use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::point::{dot, sub};
 use nmt_geom::{NodeId, Point};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Stars per piece of work.
@@ -195,15 +197,18 @@ impl Stencils {
         n_monomials(self.params.order) - self.params.first_row()
     }
 
-    /// Gives `nodes` larger stars: half as many nodes again as they have, at least, each sound as those of
-    /// [`Self::new`] are.
-    pub(crate) fn enlarge(&mut self, surroundings: &Surroundings, nearest: &Nearest, nodes: &[NodeId]) {
+    /// Half as many nodes again as the star of `node` has.
+    pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
+        (3 * self.sizes[node.index() - self.first] as usize).div_ceil(2)
+    }
+
+    /// Gives nodes other stars, of the sizes told at least, each sound as those of [`Self::new`] are.
+    pub(crate) fn replace(&mut self, surroundings: &Surroundings, nearest: &Nearest, stars: &[(NodeId, usize)]) {
         let mut finder = StarFinder::new(surroundings, nearest, self.params.choice);
         let (mut mwls, mut star) = (Mwls::default(), Vec::new());
         let StarParams { order, smoothing, .. } = self.params;
-        for &node in nodes {
+        for &(node, size) in stars {
             let k = node.index() - self.first;
-            let size = (3 * self.sizes[k] as usize).div_ceil(2);
             let negative_diagonal = node.index() >= surroundings.n_boundary();
             let demand =
                 Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes: Slopes::Free };
@@ -263,6 +268,14 @@ impl Stencils {
             outcomes: Vec::new(),
             known: Vec::new(),
         }
+    }
+
+    /// How to find these stars again, of which `larger` were enlarged.
+    pub(crate) fn used(&self, larger: BTreeMap<NodeId, usize>) -> UsedStars {
+        if self.params.order == 0 {
+            return UsedStars::default();
+        }
+        UsedStars::new(self.params, self.first, larger, self.known.iter().copied().collect())
     }
 
     /// The metric of their coordinates.

@@ -268,23 +268,20 @@ impl LinearSystem {
 
     /// Puts equations in the place of those that have their numbers, which ascend.
     pub fn replace(&mut self, anew: &[(usize, Equation)]) {
-        let mut replaced = Self::new(self.n(), self.hole_columns.len());
-        let kept = |number: &u32| anew.binary_search_by_key(&(*number as usize), |(k, _)| *k).is_err();
-        let mut next = anew.iter().peekable();
-        for k in 0..self.n() {
-            if let Some((_, equation)) = next.next_if(|(number, _)| *number == k) {
-                replaced.push(equation);
-                continue;
-            }
-            self.matrix.row(k).entries().for_each(|(column, value)| replaced.matrix.push(column as u32, value));
-            replaced.matrix.end_row();
-            replaced.rhs.push(self.rhs[k]);
+        let numbers: Vec<usize> = anew.iter().map(|(number, _)| *number).collect();
+        let rows: Vec<&[(u32, f64)]> = anew.iter().map(|(_, equation)| equation.row.unknowns.as_slice()).collect();
+        self.matrix.replace_rows(&numbers, &rows);
+        for (number, equation) in anew {
+            self.rhs[*number] = equation.rhs - equation.row.known;
         }
-        for (column, old) in replaced.hole_columns.iter_mut().zip(&self.hole_columns) {
-            column.extend(old.iter().filter(|(number, _)| kept(number)));
+        for (hole, column) in self.hole_columns.iter_mut().enumerate() {
+            column.retain(|(number, _)| numbers.binary_search(&(*number as usize)).is_err());
+            for (number, equation) in anew {
+                let own = equation.row.holes.iter().filter(|(of, _)| *of as usize == hole);
+                column.extend(own.map(|(_, value)| (*number as u32, *value)));
+            }
             column.sort_unstable_by_key(|(number, _)| *number);
         }
-        *self = replaced;
     }
 
     /// Adds functionals to the left sides of the equations that have their numbers, in any order, one equation more than

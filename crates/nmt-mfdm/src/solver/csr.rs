@@ -1,6 +1,7 @@
 //! Sparse matrices by rows, and their products.
 
 use crate::parallel::{fill_pieces, map_pieces};
+use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
 const ROWS: usize = 4096;
@@ -196,10 +197,52 @@ impl Csr {
         self.entry(i, i as u32)
     }
 
-    /// Makes every entry of the columns told a 0.
-    pub fn clear_columns(&mut self, is_told: &[bool]) {
-        let entries = self.columns.iter().zip(&mut self.values);
-        entries.filter(|(column, _)| is_told[**column as usize]).for_each(|(_, value)| *value = 0.0);
+    /// Multiplies every column by its factor.
+    pub fn scale_columns(&mut self, factors: &[f64]) {
+        self.columns.iter().zip(&mut self.values).for_each(|(column, value)| *value *= factors[*column as usize]);
+    }
+
+    /// Puts `rows` in the place of those that have their numbers, which ascend; within the matrix, since two of it would be
+    /// the most that a solution holds at a time.
+    pub fn replace_rows(&mut self, numbers: &[usize], rows: &[&[(u32, f64)]]) {
+        let mut runs = Vec::with_capacity(numbers.len() + 1); // of entries that stay
+        let mut first = 0;
+        for &number in numbers {
+            runs.push(self.starts[first]..self.starts[number]);
+            first = number + 1;
+        }
+        runs.push(self.starts[first]..self.n_entries());
+        // What stays moves to the front, then, the last first, behind what is new before it.
+        let mut kept = 0;
+        for run in &runs {
+            self.move_entries(run.clone(), kept);
+            kept += run.len();
+        }
+        let mut end = kept + rows.iter().map(|row| row.len()).sum::<usize>();
+        self.columns.resize(end, 0);
+        self.values.resize(end, 0.0);
+        for (k, run) in runs.iter().enumerate().rev() {
+            (kept, end) = (kept - run.len(), end - run.len());
+            self.move_entries(kept..kept + run.len(), end);
+            let Some(row) = k.checked_sub(1).map(|k| rows[k]) else { continue };
+            end -= row.len();
+            for (slot, &(column, value)) in (end..).zip(row) {
+                (self.columns[slot], self.values[slot]) = (column, value);
+            }
+        }
+        let mut anew = numbers.iter().zip(rows).peekable();
+        let mut old_start = 0;
+        for i in 0..self.n_rows() {
+            let old_length = self.starts[i + 1] - old_start;
+            old_start = self.starts[i + 1];
+            let length = anew.next_if(|(number, _)| **number == i).map_or(old_length, |(_, row)| row.len());
+            self.starts[i + 1] = self.starts[i] + length;
+        }
+    }
+
+    fn move_entries(&mut self, from: Range<usize>, to: usize) {
+        self.columns.copy_within(from.clone(), to);
+        self.values.copy_within(from, to);
     }
 
     /// A·B.
@@ -263,6 +306,24 @@ pub(crate) mod tests {
         let x: Vec<f64> = (0..11).map(f64::from).collect();
         let expected: Vec<f64> = a.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
         assert_eq!(of_dense(&a).apply(&x), expected);
+    }
+
+    #[test]
+    fn longer_and_shorter_rows_take_the_places_of_others() {
+        let mut dense = scattered(9, 6);
+        let mut matrix = of_dense(&dense);
+        dense[0] = vec![1.0; 6];
+        dense[3] = vec![0.0; 6];
+        dense[4] = vec![0.0, 2.0, 0.0, 0.0, 0.0, 7.0];
+        dense[8] = vec![3.0; 6];
+        let numbers = [0, 3, 4, 8];
+        let row = |i: &usize| (0u32..).zip(dense[*i].iter().copied()).filter(|(_, v)| *v != 0.0).collect::<Vec<_>>();
+        let rows: Vec<Vec<(u32, f64)>> = numbers.iter().map(row).collect();
+        matrix.replace_rows(&numbers, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        assert_eq!(matrix, of_dense(&dense));
+        let before = matrix.clone();
+        matrix.replace_rows(&[], &[]);
+        assert_eq!(matrix, before);
     }
 
     #[test]

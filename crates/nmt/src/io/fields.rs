@@ -14,7 +14,7 @@ pub struct NodeFields<'a> {
     /// Residual of the differential equation at centroids, shape (n_triangles,).
     pub(crate) residual: Vec<f64>,
     /// The star of each node in the equations; empty for finite elements.
-    pub(crate) stars: &'a [StarDiagnostics],
+    pub(crate) stars: Vec<StarDiagnostics>,
 }
 
 impl<'a> NodeFields<'a> {
@@ -33,7 +33,7 @@ impl<'a> NodeFields<'a> {
                 ("tau", of_stress(|stress| stress.magnitude())),
             ],
             residual: residuals(&part.mesh, &solution.field, solution.g_theta),
-            stars: &solution.star_diagnostics,
+            stars: solution.used_stars.diagnostics(&part.mesh),
         }
     }
 
@@ -51,7 +51,7 @@ impl<'a> NodeFields<'a> {
             part,
             at_nodes,
             residual: solution.residuals(&part.mesh, |p| data.settings.source.at(p)),
-            stars: &solution.star_diagnostics,
+            stars: solution.used_stars.diagnostics(&part.mesh),
         }
     }
 

@@ -31,7 +31,7 @@ pub struct StarArrays {
 impl StarArrays {
     /// The stars of a solved subdomain; every number is finite.
     pub fn of(fields: &NodeFields) -> Self {
-        let mut stars = fields.stars.to_vec();
+        let mut stars = fields.stars.clone();
         stars.resize(fields.part.mesh.cloud().n_nodes(), StarDiagnostics::default());
         let finite = |of: fn(&StarDiagnostics) -> f64| -> Vec<f64> {
             stars.iter().map(of).map(|value| if value.is_finite() { value } else { 0.0 }).collect()

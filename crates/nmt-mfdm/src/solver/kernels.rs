@@ -1,0 +1,28 @@
+//! Parts of the iteration, repeated so that their instructions can be counted.
+
+use super::amg::{Hierarchy, Symmetry};
+use crate::system::LinearSystem;
+
+/// Builds the levels so many times.
+pub(crate) fn setups(system: &LinearSystem, times: usize) -> f64 {
+    let complexity = |_| {
+        Hierarchy::new(&system.matrix, Symmetry::Unsymmetric).map_or(0.0, |hierarchy| hierarchy.operator_complexity())
+    };
+    (0..times).map(complexity).sum()
+}
+
+/// Builds them once and makes so many cycles.
+pub(crate) fn cycles(system: &LinearSystem, times: usize) -> f64 {
+    let Some(hierarchy) = Hierarchy::new(&system.matrix, Symmetry::Unsymmetric) else { return 0.0 };
+    let (mut room, mut x) = (hierarchy.workspace(), vec![0.0; system.n()]);
+    let mut cycle = |_| {
+        hierarchy.cycle(&system.rhs, &mut x, &mut room);
+        x.iter().sum::<f64>()
+    };
+    (0..times).map(&mut cycle).sum()
+}
+
+/// Multiplies the right side by the matrix so many times.
+pub(crate) fn products(system: &LinearSystem, times: usize) -> f64 {
+    (0..times).map(|_| system.matrix.apply(&system.rhs).iter().sum::<f64>()).sum()
+}
