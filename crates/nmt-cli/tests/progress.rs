@@ -41,10 +41,11 @@ fn without_a_terminal(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_long_run_shows_its_stages_on_a_terminal_and_nothing_of_them_on_stdout() {
-    let (directory, file) = square("long", 301);
+    let (directory, file) = square("long", 501);
     let out = directory.join("out");
     let (shown, stdout) = on_a_terminal(&directory, &format!("solve '{file}' --json --out '{}'", out.display()));
-    for part in ["equations", "linear solver", "iteration ", "residual ", "recovery and results", " nodes", "files"] {
+    // What comes before the first second is up depends on the machine.
+    for part in ["recovery and results", " nodes", "files"] {
         assert!(shown.contains(part), "{part} is not in {shown}");
     }
     assert!(stdout.starts_with('{') && stdout.ends_with("}\n"));
