@@ -3,7 +3,7 @@
 use crate::golden::read_problem;
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::{edges_svg, solution_svg, stages_svg, star_svg};
+use nmt::figures::{edges_svg, nodes_svg, solution_svg, stages_svg, star_svg};
 use nmt::pipeline::{clouds, meshes};
 use nmt::prelude::*;
 use nmt::star::StarView;
@@ -14,6 +14,9 @@ const SHOWN: [&str; 1] = ["paper-3"];
 
 /// The problem whose edges the documentation shows.
 const EDGES: &str = "i-section";
+
+/// The problem whose cloud the documentation shows.
+const GRADED: &str = "graded-l";
 
 /// The problem whose mesh the documentation shows in its four stages.
 const STAGES: &str = "bare-segment";
@@ -29,6 +32,9 @@ pub fn draw() -> Result<()> {
     }
     let problem = shipped(EDGES)?;
     write("edges", &edges_svg(&problem, &solve_problem(&problem)?))?;
+    let problem = shipped(GRADED)?;
+    let parts = clouds(&problem, &mut |_, _| {})?;
+    write(GRADED, &nodes_svg(&problem, parts.iter().map(|part| (part.name.as_str(), &part.cloud))))?;
     let problem = shipped(STAGES)?;
     for part in clouds(&problem, &mut |_, _| {})? {
         let stages = nmt_tri::stages(&part.cloud, &nmt_tri::Elimination::default())?;

@@ -8,6 +8,9 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "nmt", version, about, long_about = None)]
 pub struct Args {
+    /// Draw no bar of progress; without this one is drawn on stderr, where that is a terminal, after a second
+    #[arg(long, global = true)]
+    pub no_progress: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -24,7 +27,7 @@ pub enum Command {
     Mesh(MeshArgs),
     /// Solve the Prandtl torsion problem, or with a `source` the Poisson problem
     Solve(SolveArgs),
-    /// Solve by every formulation on the same clouds: unknowns, J, error and time side by side
+    /// Solve by every formulation on the same clouds: unknowns, J (or u), error and time side by side
     Compare(CompareArgs),
     /// Draw one thing
     #[command(subcommand)]
@@ -174,7 +177,7 @@ pub struct CompareArgs {
     /// Seed of the randomisation, 0 or more
     #[arg(long, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Exact J to hold the others against, for a problem of one subdomain; by default the best of them is
+    /// Exact J to hold the others against, for torsion of one subdomain; by default the best of them is
     #[arg(long = "exact-J", value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub exact_j: Option<f64>,
     /// Print the rows as JSON on stdout

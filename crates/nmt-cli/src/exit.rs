@@ -33,9 +33,14 @@ pub enum Failure {
     /// The numerics failed.
     #[error(transparent)]
     Numerics(NmtError),
-    /// No method of a comparison could solve anything; why stands in its rows.
-    #[error("no method could solve the problem; each row says why")]
-    NoMethod,
+    /// Methods of a comparison could not solve the problem; why stands in their rows.
+    #[error("{failed} of {of} rows could not be solved; each says why")]
+    Methods {
+        /// How many.
+        failed: usize,
+        /// Of how many.
+        of: usize,
+    },
     /// An option does not suit the problem.
     #[error("{0}")]
     Option(String),
@@ -80,7 +85,7 @@ impl Failure {
         match self {
             Self::Problem { .. } | Self::NotText { .. } => 1,
             Self::Option(_) => USAGE,
-            Self::Numerics(_) | Self::NoMethod | Self::Json(_) => 3,
+            Self::Numerics(_) | Self::Methods { .. } | Self::Json(_) => 3,
             Self::Io { .. } | Self::Picture { .. } => 4,
         }
     }

@@ -9,8 +9,8 @@
 //! nmt plot star FILE --node N   the star of one node with its weights
 //! ```
 //!
-//! Exit codes: 0 done, 1 the problem is wrong, 2 usage, 3 the numerics failed, 4 input or output failed. Results go to
-//! stdout, errors and warnings to stderr.
+//! Exit codes: 0 done, 1 the problem is wrong, 2 usage, 3 the numerics failed, 4 input or output failed, 130 interrupted.
+//! Results go to stdout, errors and warnings to stderr.
 //!
 //! ```
 //! use std::process::ExitCode;
@@ -22,6 +22,9 @@ mod args;
 mod commands;
 mod exit;
 mod files;
+mod interrupt;
+mod out_dir;
+mod progress;
 mod timing;
 
 use args::{Args, Command, Picture};
@@ -39,14 +42,19 @@ pub fn run<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) ->
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::USAGE));
         }
     };
+    interrupt::handle();
+    let progress = progress::Progress::new(!args.no_progress);
     let outcome = match &args.command {
-        Command::Check(options) => commands::check(options),
-        Command::Nodes(options) => commands::nodes(options),
-        Command::Mesh(options) => commands::mesh(options),
-        Command::Solve(options) => commands::solve(options),
-        Command::Compare(options) => commands::compare(options),
-        Command::Plot(Picture::Star(options)) => commands::star(options),
+        Command::Check(options) => commands::check(options, &progress),
+        Command::Nodes(options) => commands::nodes(options, &progress),
+        Command::Mesh(options) => commands::mesh(options, &progress),
+        Command::Solve(options) => commands::solve(options, &progress),
+        Command::Compare(options) => commands::compare(options, &progress),
+        Command::Plot(Picture::Star(options)) => commands::star(options, &progress),
     };
+    progress.clear();
+    // Where an interruption is under way it ends the run, and an error that it caused is not told.
+    drop(interrupt::uninterrupted());
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

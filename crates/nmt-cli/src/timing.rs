@@ -1,6 +1,6 @@
 //! The clock and the memory: the only place that reads them.
 
-use nmt::pipeline::Stage;
+use nmt::pipeline::{Event, Stage};
 use nmt::report::{Report, Seconds};
 use std::time::Instant;
 
@@ -23,8 +23,9 @@ impl Stopwatch {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// A stage of a subdomain ends now.
-    pub fn lap(&mut self, subdomain: usize, stage: Stage) {
+    /// What happens in a subdomain happens now.
+    pub fn observe(&mut self, subdomain: usize, event: Event) {
+        let Event::Ended(stage) = event else { return };
         let now = Instant::now();
         self.laps.push((subdomain, stage, (now - self.last).as_secs_f64()));
         self.last = now;

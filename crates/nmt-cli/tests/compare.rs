@@ -95,6 +95,45 @@ fn without_an_exact_j_there_are_no_pictures() {
 }
 
 #[test]
+fn methods_that_fail_end_in_exit_code_3_and_the_table_has_the_others() {
+    let (directory, _) = square("failed");
+    // Four nodes: too few for a polynomial of order 2, enough for finite elements.
+    let file = directory.join("triangle.toml");
+    let edge = "{ line = true, nodes = 2 }";
+    let problem =
+        format!("[[subdomain]]\nnodes = [3, 3]\noutline = [[0, 0], {edge}, [1, 0], {edge}, [0.5, 0.9], {edge}]\n");
+    for more in ["", "[solve]\nsource = \"1\"\n"] {
+        std::fs::write(&file, format!("{problem}{more}")).expect("a scratch file");
+        let out = directory.join("out");
+        let output = compare(&[&file.display().to_string(), "--out", &out.display().to_string()]);
+        assert_eq!(output.status.code(), Some(3));
+        assert!(text(&output.stderr).contains("5 of 10 rows could not be solved"), "{}", text(&output.stderr));
+        let table = text(&output.stdout);
+        assert!(table.contains("  fem                                    1 "), "{table}");
+        assert_eq!(table.matches("failed: the star of ").count(), 5, "{table}");
+        let json: Value =
+            serde_json::from_slice(&std::fs::read(out.join("compare.json")).expect("rows")).expect("JSON");
+        let with_error = json["rows"].as_array().expect("rows").iter().filter(|row| row["error"].is_string()).count();
+        assert_eq!(with_error, 5);
+    }
+}
+
+#[test]
+fn a_poisson_problem_has_its_errors_in_the_table_and_its_pictures() {
+    let directory = square("poisson").0;
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/problems/poisson-square.toml");
+    let (file, out) = (file.display().to_string(), directory.join("out"));
+    let output = compare(&[&file, "--nodes", "15,15", "--nodes", "21,21", "--out", &out.display().to_string()]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    insta::assert_snapshot!("poisson_table", timeless(text(&output.stdout)));
+    for name in ["compare.json", "compare-unknowns.svg", "compare-unknowns.png", "compare-time.svg", "compare-time.png"]
+    {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    assert_eq!(compare(&[&file, "--exact-J", "1"]).status.code(), Some(2));
+}
+
+#[test]
 fn what_does_not_suit_is_refused() {
     let (_, file) = square("refused");
     let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/problems/paper-1.toml").display().to_string();

@@ -71,3 +71,21 @@ fn a_star_that_there_is_not_is_told_with_what_there_is() {
     }
     assert_eq!(nmt(&["plot", "star", &one, "--node", "-1"]).status.code(), Some(2));
 }
+
+#[test]
+fn of_several_subdomains_the_files_bear_the_name_of_the_stars_own() {
+    let out = scratch("star-named");
+    std::fs::create_dir_all(&out).expect("a scratch directory");
+    let file = out.join("two.toml");
+    let text = "[[subdomain]]\nname = \"left web/2\"\nnodes = [5, 5]\nrectangle = { from = [0, 0], to = [1, 1] }\n\
+                [[subdomain]]\nname = \"right\"\nnodes = [5, 5]\nrectangle = { from = [2, 0], to = [3, 1] }\n";
+    std::fs::write(&file, text).expect("a scratch file");
+    let (file, shown) = (file.display().to_string(), out.display().to_string());
+    for (name, picture) in [("left web/2", "star-left_web_2-20"), ("right", "star-right-20")] {
+        let output = nmt(&["plot", "star", &file, "--subdomain", name, "--node", "20", "--out", &shown]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        for kind in ["svg", "png"] {
+            assert!(out.join(format!("{picture}.{kind}")).is_file(), "{picture}.{kind}");
+        }
+    }
+}

@@ -4,8 +4,8 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use nmt_cloud::{Cloud, CloudParams, Section, generate, quality};
-use nmt_curve::Outline;
+use nmt_cloud::{Cloud, CloudParams, Grading, Section, generate, quality};
+use nmt_curve::{Expression, Outline};
 use nmt_geom::Point;
 
 fn main() {
@@ -42,6 +42,41 @@ fn regular(bencher: Bencher, n: usize) {
 #[divan::bench(args = [10_000, 100_000, 1_000_000])]
 fn irregular(bencher: Bencher, n: usize) {
     let (section, params) = (u_with_hole(64), params(n, 0.25));
+    bencher.counter(ItemsCount::new(n)).bench_local(|| cloud(&section, &params));
+}
+
+/// Refined towards both re-entrant corners, where the spacing is 1e-6 and grows by 0.3.
+#[divan::bench(args = [10_000, 100_000, 1_000_000])]
+fn refined_at_two_corners(bencher: Bencher, n: usize) {
+    let grading = Grading::default().near([1.0, 1.0], 1e-6, 0.3).near([3.0, 1.0], 1e-6, 0.3);
+    let (section, params) = (u_with_hole(64), CloudParams { grading: Some(grading), ..params(n, 0.25) });
+    bencher.counter(ItemsCount::new(n)).bench_local(|| cloud(&section, &params));
+}
+
+/// Spacings of a formula, from one to seven.
+#[divan::bench(args = [10_000, 100_000, 1_000_000])]
+fn graded_by_a_formula(bencher: Bencher, n: usize) {
+    let f = Expression::parse("0.0009 + 0.0013*x", &["x", "y"]).expect("a formula");
+    let finer = (1.87e6 / n as f64).sqrt();
+    let grading = Grading::by(move |p| finer * f.eval(&p));
+    let section = u_with_hole(64);
+    let params =
+        CloudParams { nodes: [201, 151], irregularity: 0.25, grading: Some(grading), ..CloudParams::default() };
+    bencher.counter(ItemsCount::new(n)).bench_local(|| cloud(&section, &params));
+}
+
+/// 10⁵ refined points, as from an error indicator.
+#[divan::bench]
+fn refined_at_many_points(bencher: Bencher) {
+    let mut grading = Grading::default();
+    for k in 0..100_000u32 {
+        let t = f64::from(k) * 2.399_963_229_728_653; // the golden angle
+        let r = 2.0 * (f64::from(k) / 1e5).sqrt();
+        grading = grading.near([2.0 + r * t.cos(), 1.5 + r * t.sin()], 0.001 + 0.002 * r, 0.3);
+    }
+    let section = u_with_hole(64);
+    let params = CloudParams { nodes: [201, 151], grading: Some(grading), ..CloudParams::default() };
+    let n = cloud(&section, &params).n_nodes();
     bencher.counter(ItemsCount::new(n)).bench_local(|| cloud(&section, &params));
 }
 

@@ -2,8 +2,9 @@
 
 use crate::error::CloudError;
 use crate::section::{CloudParams, GivenNode, Section};
-use nmt_curve::{ArcTable, Curve, Division, EdgeNodes, divide_by_chords, node_count};
-use nmt_geom::point::{along, sub};
+use crate::spacing::{Spacing, least_segments};
+use nmt_curve::{ArcTable, Curve, Division, EdgeNodes, OutlineEdge, SpacingTable, divide_by_chords, node_count};
+use nmt_geom::point::{along, distance, sub};
 use nmt_geom::{Bbox, BoundaryLoop, EdgeId, NodeId, Point, RealBoundary};
 
 /// The real boundary, and where its nodes lie on the outline.
@@ -54,13 +55,15 @@ pub fn segment_counts(section: &Section, params: &CloudParams) -> Vec<usize> {
 /// Places the boundary nodes: every vertex, then the nodes of every edge by its rule or as they are given, each that is
 /// not fixed displaced along its edge by ±Amp of the shorter of its two segments where the cloud is irregular.
 ///
+/// With a `spacing` the rule is equal parts of ∫ds/h, as many as make the segments no longer than it asks for.
 /// `random` gives 2r − 1 and 2r′ − 1 of (10) for a node and a draw.
 pub(crate) fn boundary_nodes(
     section: &Section,
     params: &CloudParams,
+    spacing: Option<&Spacing>,
     random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) -> Result<BoundaryNodes, CloudError> {
-    let counts = segment_counts(section, params);
+    let counts = if spacing.is_none() { segment_counts(section, params) } else { Vec::new() };
     let mut draft = Draft::at_vertices(section);
     let n_vertices = draft.xy.len();
     let (mut first_vertex, mut first_edge) = (0, 0);
@@ -69,13 +72,14 @@ pub(crate) fn boundary_nodes(
         for (e, edge) in outline.edges.iter().enumerate() {
             let failed = |source| CloudError::Edge { edge: first_edge + e, source };
             let given = params.edge_nodes.get(first_edge + e).and_then(Option::as_deref);
-            let (places, closing) = match given {
-                Some(nodes) => (Places::given(nodes), None),
-                None => Places::new(&edge.curve, counts[first_edge + e], params.division).map_err(failed)?,
+            let path = EdgePath::new(&edge.curve).map_err(failed)?;
+            let (places, closing) = match (given, spacing) {
+                (Some(nodes), _) => (Places::given(nodes), None),
+                (None, Some(spacing)) => (Places::graded(&path, edge, first_edge + e, spacing)?, None),
+                (None, None) => Places::new(&edge.curve, counts[first_edge + e], params.division).map_err(failed)?,
             };
             let edge_id = EdgeId::of(first_edge + e);
             draft.closings.extend(closing.map(|closing| Closing { edge: edge_id, ..closing }));
-            let path = EdgePath::new(&edge.curve).map_err(failed)?;
             draft.begin_edge(&mut ring, NodeId::of(first_vertex + e), edge_id);
             for s in 1..places.n_segments() {
                 let fixed = given.and_then(|nodes| nodes.get(s - 1)).and_then(|node| Some((node.fraction, node.at?)));
@@ -184,6 +188,24 @@ impl Draft {
     }
 }
 
+/// A number of spacings is met to this fraction, so that rounding adds no segment; as in (2) \[D4\].
+const COUNT_SLACK: f64 = 1.0e-6;
+
+/// Segments of a closed edge are a multiple of this, where their number follows from a spacing.
+const QUARTERS: usize = 4;
+
+/// Why an edge cannot be divided by a spacing.
+enum EdgeFault {
+    Curve(nmt_curve::CurveError),
+    Spacing(CloudError),
+}
+
+impl From<nmt_curve::CurveError> for EdgeFault {
+    fn from(source: nmt_curve::CurveError) -> Self {
+        Self::Curve(source)
+    }
+}
+
 /// Where the nodes of an edge lie before they slide: fractions of its length.
 enum Places {
     /// Evenly, in so many segments.
@@ -209,6 +231,29 @@ impl Places {
             fractions.push(1.0);
         }
         Ok((Self::Listed(fractions), Some(Closing { edge: EdgeId(0), chord, left_out, closing_error })))
+    }
+
+    /// The places by a spacing.
+    fn graded(path: &EdgePath, edge: &OutlineEdge, number: usize, spacing: &Spacing) -> Result<Self, CloudError> {
+        let length = path.length();
+        let table = SpacingTable::new(length, |s| spacing.at(path.point_at(s / length)).map_err(EdgeFault::Spacing));
+        let table = table.map_err(|fault| match fault {
+            EdgeFault::Curve(nmt_curve::CurveError::NodeCount { most, .. }) => {
+                CloudError::TooFine { spacing: spacing.finest(), limit: most as f64, place: " on one edge" }
+            }
+            EdgeFault::Curve(source) => CloudError::Edge { edge: number, source },
+            EdgeFault::Spacing(error) => error,
+        })?;
+        let asked = table.spacings();
+        let n = match edge.nodes {
+            Some(_) => least_segments(edge),
+            None => {
+                let n = least_segments(edge).max((asked - COUNT_SLACK * asked.max(1.0)).ceil() as usize);
+                // A circle or an ellipse whose spacing is symmetric gets nodes that are.
+                if edge.curve.is_closed() { n.next_multiple_of(QUARTERS) } else { n }
+            }
+        };
+        Ok(Self::Listed(table.equal_parts(n)))
     }
 
     /// The places of nodes that are given.
@@ -244,6 +289,13 @@ impl EdgePath {
         match curve {
             Curve::Line { from, to } => Ok(Self::Line { from: *from, to: *to }),
             curve => Ok(Self::Curved(ArcTable::new(curve)?)),
+        }
+    }
+
+    fn length(&self) -> f64 {
+        match self {
+            Self::Line { from, to } => distance(*from, *to),
+            Self::Curved(table) => table.length(),
         }
     }
 

@@ -32,6 +32,15 @@ impl Clearance {
             ClearanceUnit::Max => [1.0; 2],
             ClearanceUnit::Scaled => spacing.map(|own| h / own),
         };
+        Self::stretched_by(stretch, h, size, edge, node)
+    }
+
+    /// For the spacing `h`, the same along x and y: of a node of a graded cloud.
+    pub fn of_spacing(h: f64, size: f64, edge: f64, node: f64) -> Self {
+        Self::stretched_by([1.0; 2], h, size, edge, node)
+    }
+
+    fn stretched_by(stretch: [f64; 2], h: f64, size: f64, edge: f64, node: f64) -> Self {
         let slack = CLEARANCE_SLACK_REL * size * stretch[0].max(stretch[1]);
         // Even without clearance a node is no point of the boundary.
         let least = SAME_POINT_REL * size;

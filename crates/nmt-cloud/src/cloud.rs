@@ -5,6 +5,8 @@ use crate::census::Census;
 use crate::clearance::Clearance;
 use crate::error::CloudError;
 use crate::lattice::Lattice;
+use crate::nested::NestedLattice;
+use crate::sow::LocalClearance;
 use nmt_geom::{EdgeId, LoopId, NodeId, Point, RealBoundary};
 
 /// What kind of node it is; the paper's Nodes_codes.
@@ -49,8 +51,17 @@ pub struct Cloud {
     spacing: [f64; 2],
     clearance: Clearance,
     born: Option<Born>,
+    local: Option<Local>,
     closings: Vec<Closing>,
     census: Census,
+}
+
+/// Spacings of a graded cloud.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Local {
+    pub lattice: NestedLattice,
+    pub asked: Vec<f64>, // shape (n_nodes,), user's length unit
+    pub clearance: LocalClearance,
 }
 
 /// Where interior nodes come from.
@@ -81,6 +92,7 @@ pub(crate) struct CloudParts {
     pub spacing: [f64; 2],
     pub clearance: Clearance,
     pub born: Option<Born>,
+    pub local: Option<Local>,
     pub closings: Vec<Closing>,
     pub census: Census,
 }
@@ -108,6 +120,7 @@ impl Cloud {
             spacing,
             clearance,
             born: None,
+            local: None,
             closings,
             census,
         })
@@ -130,7 +143,8 @@ impl Cloud {
     }
 
     pub(crate) fn new(parts: CloudParts) -> Self {
-        let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census } = parts;
+        let CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, local, closings, census } =
+            parts;
         let none = NodeEdges { first: EdgeId(u32::MAX), second: EdgeId(u32::MAX) };
         let mut edges = vec![none; boundary.xy().len()];
         for segment in boundary.segments() {
@@ -151,7 +165,7 @@ impl Cloud {
                 }
             }
         }
-        Self { xy, n_vertices, boundary, edges, fractions, spacing, clearance, born, closings, census }
+        Self { xy, n_vertices, boundary, edges, fractions, spacing, clearance, born, local, closings, census }
     }
 
     /// Coordinates, shape (n_nodes, 2), user's length unit.
@@ -200,19 +214,46 @@ impl Cloud {
         &self.boundary
     }
 
-    /// [h_x, h_y] of the background grid, user's length unit.
+    /// [h_x, h_y] of the background grid, user's length unit; of a graded cloud those of its coarsest lattice.
     pub fn spacing(&self) -> [f64; 2] {
         self.spacing
     }
 
-    /// max(h_x, h_y): the length that clearances and visibility are measured in.
+    /// max(h_x, h_y); of a graded cloud the largest spacing.
     pub fn max_spacing(&self) -> f64 {
         self.spacing[0].max(self.spacing[1])
     }
 
-    /// The least distances of interior nodes from the boundary, as they were generated.
+    /// The spacing at a node, which clearances and visibility are measured in, user's length unit: what was asked for at
+    /// the place where it was generated, or [`Self::max_spacing`] where the cloud is not graded.
+    pub fn local_spacing(&self, node: NodeId) -> f64 {
+        let asked = self.local.as_ref().and_then(|local| local.asked.get(node.index()));
+        asked.copied().unwrap_or_else(|| self.max_spacing())
+    }
+
+    /// True where the spacing varies, as asked by a [`crate::Grading`].
+    pub fn is_graded(&self) -> bool {
+        self.local.is_some()
+    }
+
+    /// The nested lattices that the interior nodes of a graded cloud come from; `None` for others.
+    pub fn nested_lattice(&self) -> Option<&NestedLattice> {
+        self.local.as_ref().map(|local| &local.lattice)
+    }
+
+    pub(crate) fn local(&self) -> Option<&Local> {
+        self.local.as_ref()
+    }
+
+    /// The least distances of interior nodes from the boundary, as they were generated; of a graded cloud where it is
+    /// coarsest.
     pub fn clearance(&self) -> &Clearance {
         &self.clearance
+    }
+
+    /// The least distances of a node from the boundary: those of all, or of its own spacing in a graded cloud.
+    pub fn clearance_of(&self, node: NodeId) -> Clearance {
+        self.local.as_ref().map_or(self.clearance, |local| local.clearance.at(self.local_spacing(node)))
     }
 
     /// Where each boundary node lies along its edge, shape (n_boundary,): the arc length from the edge's first vertex as a
@@ -266,8 +307,15 @@ impl Cloud {
         if let Some(&at) = interior.iter().find(|&&p| index.locate(p) != nmt_geom::Location::Inside) {
             return Err(CloudError::InteriorOutside { at });
         }
-        if let Some(&at) = interior.iter().find(|&&p| !self.clearance.holds(p, index)) {
+        let clearance = |k: usize| self.clearance_of(NodeId::of(self.n_boundary() + k));
+        if let Some((_, &at)) = interior.iter().enumerate().find(|&(k, &p)| !clearance(k).holds(p, index)) {
             return Err(CloudError::TooNear { at });
+        }
+        let sound = |local: &Local| {
+            local.asked.len() == self.n_nodes() && local.asked.iter().all(|h| *h > 0.0 && *h <= self.max_spacing())
+        };
+        if !self.local.as_ref().is_none_or(sound) {
+            return Err(CloudError::NoLocalSpacing);
         }
         let Some(born) = &self.born else { return Ok(()) };
         let in_order = born.sites.windows(2).all(|pair| pair[0] < pair[1]);

@@ -77,6 +77,9 @@ pub enum CloudError {
     /// Interior nodes and the sites they come from do not belong together.
     #[error("interior nodes are not each in the box of its own site; put the cloud together without sites")]
     OffSites,
+    /// A graded cloud whose nodes do not each have a spacing.
+    #[error("the nodes of a graded cloud do not each have a spacing within its bounds; generate it anew")]
+    NoLocalSpacing,
     /// A cloud and a section that it was not generated from.
     #[error("the cloud has {n_vertices} vertices and the section {vertices}; give the section it was generated from")]
     OtherSection {
@@ -84,6 +87,51 @@ pub enum CloudError {
         vertices: usize,
         /// Vertices of the cloud.
         n_vertices: usize,
+    },
+    /// A spacing that is below the bound, or no number.
+    #[error("a spacing of {spacing:e} is not at least {least:.1e}, 1e-7 of the section's size; choose a larger one")]
+    SpacingTooSmall {
+        /// The spacing asked for, user's length unit.
+        spacing: f64,
+        /// The least one.
+        least: f64,
+    },
+    /// A spacing function that is no spacing at a place of the section.
+    #[error("the spacing is {value} at ({}, {}); it must be a positive number everywhere in the section", .at[0], .at[1])]
+    NotASpacing {
+        /// Where.
+        at: Point,
+        /// The value there.
+        value: f64,
+    },
+    /// A graded cloud of more nodes than memory would bear.
+    #[error(
+        "with spacings down to {spacing:.1e} there would be more than {limit:.0e} nodes{place}; ask for larger ones, or let \
+         them grow faster"
+    )]
+    TooFine {
+        /// The least spacing asked for, user's length unit.
+        spacing: f64,
+        /// The most nodes allowed.
+        limit: f64,
+        /// Where: empty for the cloud, or ` on one edge`.
+        place: &'static str,
+    },
+    /// A refinement along an edge that the section does not have.
+    #[error("there is no edge {edge} to refine along; the section has {n_edges}, counted from 0")]
+    NoSuchEdge {
+        /// The edge's number.
+        edge: usize,
+        /// How many edges there are.
+        n_edges: usize,
+    },
+    /// A parameter that belongs to uniform clouds.
+    #[error("a graded cloud has no {parameter}; {remedy}")]
+    NotGraded {
+        /// What it is.
+        parameter: &'static str,
+        /// What to do.
+        remedy: &'static str,
     },
     /// Interior nodes of another number than the cloud's.
     #[error("{given} interior nodes are given for a cloud that has {n_interior}; give one place for each")]

@@ -4,10 +4,11 @@ use crate::boundary::{BoundaryNodes, boundary_nodes, slide};
 use crate::clearance::{Clearance, Sieve, SiteSet};
 use crate::cloud::{Born, Cloud, CloudParts};
 use crate::error::CloudError;
+use crate::graded::generate_graded;
 use crate::irregular::Displacements;
 use crate::lattice::Lattice;
 use crate::section::{CloudParams, Section};
-use nmt_geom::{Location, Point, RealBoundary, RegionFault, SegmentIndex, ring};
+use nmt_geom::{Location, NodeId, Point, RealBoundary, RegionFault, SegmentIndex, ring};
 
 /// Grid points that a cloud may have at most.
 pub const MAX_GRID_POINTS: f64 = 1.0e8;
@@ -60,6 +61,9 @@ pub fn generate_with(
     mut random: impl FnMut(usize, usize) -> [f64; 2],
 ) -> Result<Cloud, CloudError> {
     let random: &mut dyn FnMut(usize, usize) -> [f64; 2] = &mut random;
+    if params.grading.is_some() {
+        return generate_graded(section, params, random);
+    }
     let Prepared { lattice, boundary: BoundaryNodes { boundary, n_vertices, fractions, closings }, clearance } =
         prepare(section, params, random)?;
     if let Some(fault) = boundary.faults().first() {
@@ -92,12 +96,26 @@ pub fn generate_with(
         let reach = clearance.reach().max(0.0) + moves + EXPOSED_ROOM_REL * s_x.max(s_y) * boundary.envelope().size();
         let exposed = SiteSet::near(&lattice, &boundary, &clearance, reach * (1.0 + EXPOSED_ROOM_REL));
         let is_exposed = |k: usize| exposed.contains(sites[k]);
-        displace(&mut xy, &boundary, &clearance, lattice.spacing(), params.irregularity, is_exposed, random);
+        let [dx, dy] = lattice.spacing().map(|h| h * params.irregularity);
+        let by = |_: usize, [r, s]: [f64; 2]| [dx * r, dy * s];
+        displace(&mut xy, &boundary, by, |_| clearance, is_exposed, random);
     }
     let spacing = lattice.spacing();
     let born = Some(Born { lattice, sites });
     let fractions = Some(fractions);
-    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census }))
+    let local = None;
+    Ok(Cloud::new(CloudParts {
+        xy,
+        n_vertices,
+        boundary,
+        fractions,
+        spacing,
+        clearance,
+        born,
+        local,
+        closings,
+        census,
+    }))
 }
 
 /// Randomises an existing cloud; paper, Sec. 4.4, eqs (10)–(11).
@@ -142,10 +160,15 @@ pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64)
     let mut census = cloud.census();
     let mut xy = boundary.xy().to_vec();
     let mut sites = cloud.sites().map(|_| Vec::new());
+    let mut local = cloud.local().cloned();
+    local.iter_mut().for_each(|local| local.asked.truncate(cloud.n_boundary()));
     for (k, &p) in cloud.xy()[cloud.n_boundary()..].iter().enumerate() {
         let inside = index.locate(p) == Location::Inside;
+        let node = NodeId::of(cloud.n_boundary() + k);
+        let clearance = cloud.clearance_of(node);
         if inside && clearance.holds(p, index) {
             xy.push(p);
+            local.iter_mut().for_each(|local| local.asked.push(cloud.local_spacing(node)));
             if let (Some(kept), Some(all)) = (&mut sites, cloud.sites()) {
                 kept.push(all[k]);
             }
@@ -163,11 +186,32 @@ pub fn randomise(section: &Section, cloud: &Cloud, irregularity: f64, seed: u64)
     if xy.len() == boundary.xy().len() {
         return Err(CloudError::NoInterior { remedy: "choose a smaller irregularity".into() });
     }
-    displace(&mut xy, &boundary, &clearance, spacing, irregularity, |_| true, random);
+    match &local {
+        Some(local) => {
+            let n_boundary = boundary.xy().len();
+            let by = local.displacements(n_boundary, irregularity);
+            displace(&mut xy, &boundary, by, |k| local.clearance_of(n_boundary + k), |_| true, random);
+        }
+        None => {
+            let [dx, dy] = spacing.map(|h| h * irregularity);
+            displace(&mut xy, &boundary, |_, [r, s]| [dx * r, dy * s], |_| clearance, |_| true, random);
+        }
+    }
     let born = cloud.lattice().zip(sites).map(|(lattice, sites)| Born { lattice: *lattice, sites });
     let born = born.filter(|born| born.all_within_boxes(&xy[boundary.xy().len()..]));
     let fractions = Some(fractions);
-    Ok(Cloud::new(CloudParts { xy, n_vertices, boundary, fractions, spacing, clearance, born, closings, census }))
+    Ok(Cloud::new(CloudParts {
+        xy,
+        n_vertices,
+        boundary,
+        fractions,
+        spacing,
+        clearance,
+        born,
+        local,
+        closings,
+        census,
+    }))
 }
 
 /// Lattice, real boundary and clearances: all that the interior nodes depend on.
@@ -194,7 +238,7 @@ fn prepare(
         return Err(CloudError::NoExtent { width, height });
     }
     let lattice = Lattice::new(envelope, params.nodes);
-    let boundary = boundary_nodes(section, params, random)?;
+    let boundary = boundary_nodes(section, params, None, random)?;
     let CloudParams { clearance, edge_clearance, node_clearance, .. } = *params;
     let clearance = Clearance::new(&lattice, envelope.size(), clearance, edge_clearance, node_clearance);
     Ok(Prepared { lattice, boundary, clearance })
@@ -202,38 +246,38 @@ fn prepare(
 
 /// Moves each interior node as (10) says; a place that is not clear of the boundary is drawn again.
 ///
-/// `is_exposed(k)`: whether interior node k could come too near to the boundary at all.
-fn displace(
+/// `by(k, [2r − 1, 2r′ − 1])` is how far interior node k goes, `clearance_of(k)` what it must keep, and `is_exposed(k)`
+/// whether it could come too near to the boundary at all; the last is asked in order.
+pub(crate) fn displace(
     xy: &mut [Point],
     boundary: &RealBoundary,
-    clearance: &Clearance,
-    [h_x, h_y]: [f64; 2],
-    amplitude: f64,
-    is_exposed: impl Fn(usize) -> bool,
+    by: impl Fn(usize, [f64; 2]) -> [f64; 2],
+    clearance_of: impl Fn(usize) -> Clearance,
+    mut is_exposed: impl FnMut(usize) -> bool,
     random: &mut dyn FnMut(usize, usize) -> [f64; 2],
 ) {
     let n_boundary = boundary.xy().len();
     let index = boundary.index();
-    let (dx, dy) = (h_x * amplitude, h_y * amplitude);
-    let mut place = |node: usize, site: Point, draw: usize| {
-        let [r, s] = random(node, draw);
-        [site[0] + dx * r, site[1] + dy * s]
+    let mut place = |k: usize, site: Point, draw: usize| {
+        let [dx, dy] = by(k, random(n_boundary + k, draw));
+        [site[0] + dx, site[1] + dy]
     };
     let mut redraw = Vec::new();
     for (k, p) in xy[n_boundary..].iter_mut().enumerate() {
-        let new = place(n_boundary + k, *p, 0);
-        if is_exposed(k) && !may_move(*p, new, clearance, index) {
-            redraw.push(n_boundary + k);
+        let new = place(k, *p, 0);
+        if is_exposed(k) && !may_move(*p, new, &clearance_of(k), index) {
+            redraw.push(k);
         } else {
             *p = new;
         }
     }
     for draw in 1..MAX_DRAWS {
-        redraw.retain(|&node| {
-            let new = place(node, xy[node], draw);
-            let moves = may_move(xy[node], new, clearance, index);
+        redraw.retain(|&k| {
+            let site = xy[n_boundary + k];
+            let new = place(k, site, draw);
+            let moves = may_move(site, new, &clearance_of(k), index);
             if moves {
-                xy[node] = new;
+                xy[n_boundary + k] = new;
             }
             !moves
         });

@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::lattice::Lattice;
 use crate::nearest::Nearest;
 use nmt_geom::point::{cross, distance, distance_squared, dot, lerp, sub};
-use nmt_geom::{Location, Point, RealBoundary};
+use nmt_geom::{Location, NodeId, Point, RealBoundary};
 
 /// How evenly nodes are spread; lengths in the user's unit.
 ///
@@ -20,6 +20,31 @@ pub struct CloudQuality {
     pub ratio: f64,
     /// Standard deviation of the nearest-node distances over their mean; 0 for a square grid.
     pub nearest_variation: f64,
+    /// Nearest-node distances over the spacings asked for; of a graded cloud alone.
+    pub achieved: Option<Achieved>,
+}
+
+/// Distance of each node from the nearest other one over the spacing asked for there.
+///
+/// A level of the lattice is 0.84 to 1.19 times what is asked for; where a finer one begins it is 0.6, and beside the
+/// boundary half of that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Achieved {
+    /// The least.
+    pub min: f64,
+    /// The middle one.
+    pub median: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Achieved {
+    /// Of the ratios of all nodes; `None` for none.
+    fn of(mut ratios: Vec<f64>) -> Option<Self> {
+        ratios.sort_unstable_by(f64::total_cmp);
+        let (&min, &max) = (ratios.first()?, ratios.last()?);
+        Some(Self { min, median: ratios[ratios.len() / 2], max })
+    }
 }
 
 /// Neighbours that a node's Voronoi cell is cut from at first: those of a square grid are the nearest 8, and reach a third
@@ -74,10 +99,14 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
     };
     let inner = Inner::of(cloud);
     let (mut distances, mut fill) = (Distances::default(), 0.0f64);
+    let mut ratios = Vec::new();
     for (node, &p) in xy.iter().enumerate() {
         let quick = inner.as_ref().and_then(|inner| inner.nearest_distance(node));
         let distance = quick.or_else(|| cells.largest_empty_circle(p, &mut fill));
         distances.add(distance.unwrap_or(0.0));
+        if cloud.is_graded() {
+            ratios.push(distance.unwrap_or(0.0) / cloud.local_spacing(NodeId::of(node)));
+        }
     }
     for [a, b] in boundary.all_ends() {
         // Between two nodes of the boundary no other is nearer, unless one lies within half a segment of the middle.
@@ -97,6 +126,7 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
         fill_distance: fill,
         ratio: 2.0 * fill / least,
         nearest_variation: distances.variation(),
+        achieved: Achieved::of(ratios),
     })
 }
 

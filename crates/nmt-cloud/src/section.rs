@@ -1,6 +1,7 @@
 //! What a cloud is made from: the outlines of a section, and how dense and how irregular it shall be.
 
 use crate::error::CloudError;
+use crate::grading::Grading;
 use nmt_curve::{Division, Outline};
 use nmt_geom::Point;
 
@@ -74,6 +75,10 @@ pub struct CloudParams {
     /// Nodes between the ends of an edge, in order along it, by [`nmt_geom::EdgeId`]; by default, and where it is `None`,
     /// an edge is divided by its own count.
     pub edge_nodes: Vec<Option<Vec<GivenNode>>>,
+    /// How the spacing varies; by default, and where it is `None`, it does not.
+    ///
+    /// The uniform spacing, max(h_x, h_y), is then the largest; densities of holes and counts of edges remain.
+    pub grading: Option<Grading>,
     /// How nodes are spread along curved edges \[D3\]; by arc length by default.
     pub division: Division,
     /// Amp of (10), in [0, 0.5); 0, the default, is a regular cloud.
@@ -97,6 +102,7 @@ impl Default for CloudParams {
             nodes: [11, 11],
             hole_nodes: Vec::new(),
             edge_nodes: Vec::new(),
+            grading: None,
             division: Division::Arc,
             irregularity: 0.0,
             seed: DEFAULT_SEED,

@@ -8,7 +8,7 @@
 //! * how long is it? [`arc_length`], paper (3)–(4) \[D2\]
 //! * where is the point at a given arc length? [`ArcTable`]
 //! * how many nodes does it get? [`node_count`], paper (2) \[D4\]
-//! * where do they lie? [`divide()`], [`divide_by_chords`] \[D3\]
+//! * where do they lie? [`divide()`], [`divide_by_chords`] \[D3\]; where their spacing varies, [`SpacingTable`]
 //!
 //! All tolerances are relative: a section in micrometres and the same in kilometres get the same nodes.
 //!
@@ -40,6 +40,7 @@ mod curve;
 mod divide;
 mod error;
 mod expression;
+mod graded;
 mod jump;
 mod outline;
 mod subdivision;
@@ -51,4 +52,5 @@ pub use curve::{Curve, Turn};
 pub use divide::{Division, EdgeNodes, MAX_NODES_ON_EDGE, divide, divide_by_chords};
 pub use error::{CurveEnd, CurveError};
 pub use expression::{Expression, ExpressionError, Jet, MAX_FORMULA_BYTES, MAX_FORMULA_NESTING};
+pub use graded::SpacingTable;
 pub use outline::{Outline, OutlineEdge, OutlineFault};

@@ -169,6 +169,11 @@ impl SegmentIndex {
 
     /// Every pair of segments whose boxes meet within `margin`, each once and in order: candidates for meeting.
     pub fn close_pairs(&self, margin: f64) -> Vec<[usize; 2]> {
+        self.close_pairs_of(margin, |_, _| true)
+    }
+
+    /// Those of [`Self::close_pairs`] that `counts`: a curve that is closely wound has very many with itself.
+    pub fn close_pairs_of(&self, margin: f64, counts: impl Fn(usize, usize) -> bool) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
         let grown = |k: usize| Bbox::of(self.segments[k]).grown([margin; 2]);
         for leaf in self.boxes.iter().filter(|b| b.count > 0) {
@@ -184,7 +189,7 @@ impl SegmentIndex {
                 let box_of_other = Bbox::of(self.segments[other]);
                 for (i, own) in own.iter().enumerate() {
                     let k = leaf.first as usize + i;
-                    if k < other && own.overlaps(&box_of_other, self.room) {
+                    if k < other && own.overlaps(&box_of_other, self.room) && counts(k, other) {
                         pairs.push([k, other]);
                     }
                 }

@@ -49,12 +49,9 @@ pub(crate) fn common_parts(sections: &[&Section], tolerance: f64) -> Vec<Part> {
         }
         owners.resize(boxes.len(), k);
     }
-    let near = SegmentIndex::new(boxes).close_pairs(tolerance);
-    let mut pairs: Vec<[usize; 2]> = near
-        .into_iter()
-        .map(|pair| pair.map(|piece| owners[piece]))
-        .filter(|&[i, j]| edges[i].subdomain != edges[j].subdomain)
-        .collect();
+    let are_apart = |p: usize, q: usize| edges[owners[p]].subdomain != edges[owners[q]].subdomain;
+    let near = SegmentIndex::new(boxes).close_pairs_of(tolerance, are_apart);
+    let mut pairs: Vec<[usize; 2]> = near.into_iter().map(|pair| pair.map(|piece| owners[piece])).collect();
     pairs.sort_unstable();
     pairs.dedup();
     let parts_of = |&[i, j]: &[usize; 2]| {

@@ -2,8 +2,8 @@
 
 use crate::coincide::{Part, common_parts, same_point};
 use crate::error::MergeError;
-use nmt_cloud::{CloudParams, GivenNode, Section, segment_counts};
-use nmt_curve::{ArcTable, Curve};
+use nmt_cloud::{CloudError, CloudParams, GivenNode, Section, Spacing, segment_counts};
+use nmt_curve::{ArcTable, Curve, SpacingTable};
 use nmt_geom::point::{along, sub};
 use nmt_geom::{EdgeId, Point, SubdomainId};
 
@@ -29,8 +29,11 @@ pub struct Planned<'a> {
 /// to the bit; these nodes do not slide. What is left of an edge beside its common parts is divided by its own count,
 /// evenly, and slides as usual. An edge without a common part is left to its own division (`None`).
 ///
+/// Where a side is graded, the segments between are equal parts of ∫ds/h instead, h being the smaller spacing of the two
+/// sides at each place; and what is left of a graded edge is divided by its own spacing.
+///
 /// # Errors
-/// [`MergeError::Edge`] for a common edge without a length.
+/// [`MergeError::Edge`] for a common edge without a length, [`MergeError::Spacing`] for a subdomain whose spacing is none.
 ///
 /// ```
 /// use nmt_cloud::{CloudParams, Section, generate};
@@ -53,13 +56,20 @@ pub fn conform(planned: &[Planned]) -> Result<Vec<EdgeNodes>, MergeError> {
     let sections: Vec<&Section> = planned.iter().map(|p| p.section).collect();
     let tolerance = same_point(&sections);
     let mut edges: Vec<Vec<Divided>> = Vec::with_capacity(planned.len());
+    let spacing = |(k, p): (usize, &Planned)| match p.params.grading {
+        None => Ok(None),
+        Some(_) => Spacing::new(p.section, p.params)
+            .map(Some)
+            .map_err(|source| MergeError::Spacing { subdomain: SubdomainId::of(k), source }),
+    };
+    let spacings = planned.iter().enumerate().map(spacing).collect::<Result<Vec<_>, MergeError>>()?;
     for Planned { section, params, .. } in planned {
         let counts = segment_counts(section, params);
         edges.push(counts.into_iter().map(|n_segments| Divided { n_segments, shared: Vec::new() }).collect());
     }
     for part in common_parts(&sections, tolerance) {
         if part.subdomains.iter().any(|&k| planned[k].conforming) {
-            share(&part, &sections, &mut edges)?;
+            share(&part, &sections, &spacings, &mut edges)?;
         }
     }
     let nodes_of = |(k, divided): (usize, Vec<Divided>)| -> Result<EdgeNodes, MergeError> {
@@ -67,8 +77,8 @@ pub fn conform(planned: &[Planned]) -> Result<Vec<EdgeNodes>, MergeError> {
             if divided.shared.is_empty() {
                 return Ok(None);
             }
-            let length = Path::new(sections[k], k, EdgeId::of(e))?.length;
-            Ok(Some(divided.nodes(tolerance / length)))
+            let path = Path::new(sections[k], k, EdgeId::of(e))?;
+            Ok(Some(divided.nodes(tolerance / path.length, &path, spacings[k].as_ref())?))
         });
         edges.collect()
     };
@@ -92,20 +102,27 @@ struct Shared {
 
 impl Divided {
     /// The nodes between the ends of the edge; nearer than `same` (a fraction of it) two are one.
-    fn nodes(mut self, same: f64) -> Vec<GivenNode> {
+    fn nodes(mut self, same: f64, path: &Path, spacing: Option<&Spacing>) -> Result<Vec<GivenNode>, MergeError> {
         self.shared.retain(|shared| !shared.nodes.is_empty());
         self.shared.sort_by(|a, b| a.nodes[0].0.total_cmp(&b.nodes[0].0));
         let mut given: Vec<GivenNode> = Vec::new();
         let mut before = 0.0;
-        let own = |given: &mut Vec<GivenNode>, from: f64, to: f64| {
-            let n = segments(self.n_segments, to - from);
-            let inner = (1..n).map(|k| GivenNode { fraction: from + (to - from) * (k as f64 / n as f64), at: None });
-            given.extend(inner);
+        let own = |given: &mut Vec<GivenNode>, from: f64, to: f64| -> Result<(), MergeError> {
+            let parts = match spacing {
+                None => equal_parts(segments(self.n_segments, to - from)),
+                Some(spacing) => {
+                    let place = |t: f64| path.table.point_at((from + (to - from) * t) * path.length);
+                    path.parts_by(&[spacing], (to - from) * path.length, place, f64::INFINITY)?
+                }
+            };
+            let inner = parts[1..parts.len() - 1].iter();
+            given.extend(inner.map(|t| GivenNode { fraction: from + (to - from) * t, at: None }));
+            Ok(())
         };
         for Shared { nodes } in &self.shared {
             let start = nodes[0].0;
             if start - before > same {
-                own(&mut given, before, start);
+                own(&mut given, before, start)?;
             }
             for &(fraction, at) in nodes {
                 let last = given.last().map_or(0.0, |node| node.fraction);
@@ -116,9 +133,9 @@ impl Divided {
             }
         }
         if 1.0 - before > same {
-            own(&mut given, before, 1.0);
+            own(&mut given, before, 1.0)?;
         }
-        given
+        Ok(given)
     }
 }
 
@@ -127,8 +144,18 @@ fn segments(n_segments: usize, fraction: f64) -> usize {
     (n_segments as f64 * fraction - COUNT_SLACK).ceil().max(1.0) as usize
 }
 
+/// The ends of `n` equal parts, from 0 to 1.
+fn equal_parts(n: usize) -> Vec<f64> {
+    (0..=n).map(|k| k as f64 / n as f64).collect()
+}
+
 /// Gives both sides of a common part its nodes.
-fn share(part: &Part, sections: &[&Section], edges: &mut [Vec<Divided>]) -> Result<(), MergeError> {
+fn share(
+    part: &Part,
+    sections: &[&Section],
+    spacings: &[Option<Spacing>],
+    edges: &mut [Vec<Divided>],
+) -> Result<(), MergeError> {
     let [a, b] = part.subdomains;
     let paths = [Path::new(sections[a], a, part.edges[0])?, Path::new(sections[b], b, part.edges[1])?];
     let ends = [0, 1].map(|side| part.u[side].map(|u| paths[side].fraction_to(u)));
@@ -136,16 +163,26 @@ fn share(part: &Part, sections: &[&Section], edges: &mut [Vec<Divided>]) -> Resu
         let [from, to] = ends[side];
         segments(edges[part.subdomains[side]][part.edges[side].index()].n_segments, (to - from).abs())
     };
-    let n = own(0).max(own(1));
+    let graded: Vec<&Spacing> = part.subdomains.iter().filter_map(|&k| spacings[k].as_ref()).collect();
+    let uniform = (0..2).filter(|&side| spacings[part.subdomains[side]].is_none()).map(own).max();
+    let fractions = if graded.is_empty() {
+        equal_parts(own(0).max(own(1)))
+    } else {
+        // A side that is not graded wants its own count, evenly.
+        let length = (ends[0][1] - ends[0][0]).abs() * paths[0].length;
+        let most = uniform.map_or(f64::INFINITY, |n| length / n as f64);
+        paths[0].parts_by(&graded, length, |t| paths[0].between(part, ends[0], t), most)?
+    };
+    let n = fractions.len() - 1;
     let at = |k: usize| match k {
         0 => part.from,
         k if k == n => part.to,
-        k => paths[0].between(part, ends[0], k as f64 / n as f64),
+        k => paths[0].between(part, ends[0], fractions[k]),
     };
     let places: Vec<Point> = (0..=n).map(at).collect();
     for side in 0..2 {
         let [from, to] = ends[side];
-        let fraction = |k: usize| if k == n { to } else { from + (to - from) * (k as f64 / n as f64) };
+        let fraction = |k: usize| if k == n { to } else { from + (to - from) * fractions[k] };
         let mut nodes: Vec<(f64, Point)> = places.iter().enumerate().map(|(k, &p)| (fraction(k), p)).collect();
         if to < from {
             nodes.reverse();
@@ -155,11 +192,25 @@ fn share(part: &Part, sections: &[&Section], edges: &mut [Vec<Divided>]) -> Resu
     Ok(())
 }
 
+/// Why a stretch cannot be divided by a spacing.
+enum Fault {
+    Spacing(CloudError),
+    Curve(nmt_curve::CurveError),
+}
+
+impl From<nmt_curve::CurveError> for Fault {
+    fn from(source: nmt_curve::CurveError) -> Self {
+        Self::Curve(source)
+    }
+}
+
 /// An edge by its own length.
 struct Path<'s> {
+    subdomain: SubdomainId,
     curve: &'s Curve,
     table: ArcTable,
     length: f64,
+    edge: EdgeId,
 }
 
 impl<'s> Path<'s> {
@@ -170,7 +221,30 @@ impl<'s> Path<'s> {
         let curve = &found.ok_or_else(|| MergeError::Edge { subdomain, edge, source: missing() })?.curve;
         let table = ArcTable::new(curve).map_err(|source| MergeError::Edge { subdomain, edge, source })?;
         let length = table.length();
-        Ok(Self { curve, table, length })
+        Ok(Self { subdomain, curve, table, length, edge })
+    }
+
+    /// Equal parts of ∫ds/h on a stretch of `length`, as fractions of it: h is the least of `spacings` at `place(fraction)`, and
+    /// at most `most`.
+    fn parts_by(
+        &self,
+        spacings: &[&Spacing],
+        length: f64,
+        place: impl Fn(f64) -> Point,
+        most: f64,
+    ) -> Result<Vec<f64>, MergeError> {
+        let subdomain = self.subdomain;
+        let h = |s: f64| -> Result<f64, CloudError> {
+            let p = place(s / length);
+            spacings.iter().try_fold(most, |least, spacing| Ok(least.min(spacing.at(p)?)))
+        };
+        let table = SpacingTable::new(length, |s| h(s).map_err(Fault::Spacing));
+        let table = table.map_err(|fault| match fault {
+            Fault::Spacing(source) => MergeError::Spacing { subdomain, source },
+            Fault::Curve(source) => MergeError::Edge { subdomain, edge: self.edge, source },
+        })?;
+        let asked = table.spacings();
+        Ok(table.equal_parts((asked - COUNT_SLACK * asked.max(1.0)).ceil().max(1.0) as usize))
     }
 
     /// Fraction of the length at a fraction of the parameter.

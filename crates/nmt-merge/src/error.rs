@@ -7,6 +7,14 @@ use nmt_geom::{EdgeId, Point, SubdomainId};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
+    /// A subdomain whose spacing is none somewhere.
+    #[error("subdomain {}: {source}", .subdomain.0)]
+    Spacing {
+        /// The subdomain.
+        subdomain: SubdomainId,
+        /// Why.
+        source: nmt_cloud::CloudError,
+    },
     /// An edge has no length to divide.
     #[error("edge {} of subdomain {} cannot be divided; correct it", .edge.0, .subdomain.0)]
     Edge {

@@ -1,6 +1,6 @@
 //! Sections cut in two at random, each part with a density of its own: what they share is found, conforms and welds.
 
-use nmt_cloud::{Cloud, CloudParams, Section, generate};
+use nmt_cloud::{Cloud, CloudParams, Grading, Section, generate};
 use nmt_curve::{Curve, Expression, Outline, Turn};
 use nmt_geom::Point;
 use nmt_geom::point::{cross, distance, sub};
@@ -79,6 +79,7 @@ proptest! {
         forms in [0usize..3, 0usize..3],
         nodes in [7usize..24, 7usize..24],
         irregularity in [prop_oneof![Just(0.0), 0.0..0.4f64], prop_oneof![Just(0.0), 0.0..0.4f64]],
+        graded in prop::array::uniform2(prop::bool::weighted(0.3)),
         scale in prop_oneof![Just(1.0), Just(1e-6), Just(1e3)],
     ) {
         let forms = if bulge == 0.0 { [0, 0] } else { forms.map(|form| form.max(1)) };
@@ -87,6 +88,8 @@ proptest! {
         let params = |k: usize| CloudParams {
             nodes: [nodes[k]; 2],
             irregularity: irregularity[k],
+            // Towards either end of the cut.
+            grading: graded[k].then(|| Grading::default().near(corners[[0, to][k]], 0.01 * scale, 0.25)),
             ..CloudParams::default()
         };
         let mut params = [params(0), params(1)];

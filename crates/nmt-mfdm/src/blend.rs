@@ -8,8 +8,9 @@ use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::error::MfdmError;
 use crate::gauss::{Rule, seven_points, six_points};
 use crate::mwls::{Mwls, dot};
-use crate::parallel::map_chunks;
+use crate::parallel::{CHUNK, map_chunks, take_pieces};
 use crate::repair::{Demand, sound_star};
+use crate::solve::Event;
 use crate::star::StarFinder;
 use crate::stencils::{StarParams, StarReport};
 use crate::surroundings::{Metric, Surroundings};
@@ -17,6 +18,7 @@ use nmt_cloud::Nearest;
 use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::{Mesh, barycentric};
+use std::ops::Range;
 
 /// Value and derivatives of a field at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,6 +55,17 @@ impl NodalPolynomials {
         params: StarParams,
         values: &[f64],
     ) -> Result<Self, MfdmError> {
+        Self::fit_observed(surroundings, nearest, params, values, &mut |_| {})
+    }
+
+    /// [`Self::fit`], telling how many nodes are done.
+    pub(crate) fn fit_observed(
+        surroundings: &Surroundings,
+        nearest: &Nearest,
+        params: StarParams,
+        values: &[f64],
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<Self, MfdmError> {
         struct Part {
             coefficients: Vec<f64>,
             radii: Vec<f64>,
@@ -70,7 +83,7 @@ impl NodalPolynomials {
             negative_diagonal: false,
             slopes: crate::slopes::Slopes::Free,
         };
-        let pieces = map_chunks(0..n_nodes, |piece| {
+        let part = |piece: Range<usize>| {
             let mut finder = StarFinder::new(surroundings, nearest, choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
             let mut part =
@@ -91,7 +104,7 @@ impl NodalPolynomials {
                 part.report.add(&outcome, params.order);
             }
             part
-        });
+        };
         let mut all = Self {
             order: params.order,
             blended_order: params.order,
@@ -100,15 +113,15 @@ impl NodalPolynomials {
             metric: surroundings.metric(),
             report: StarReport { size: params.size, ..StarReport::default() },
         };
-        for part in pieces {
-            if let Some(error) = part.poor {
-                return Err(error);
-            }
+        let mut poor = None;
+        take_pieces(0..n_nodes, CHUNK, part, |part: Part| {
+            poor = poor.take().or(part.poor);
             all.coefficients.extend(part.coefficients);
             all.radii.extend(part.radii);
             all.report.join(&part.report);
-        }
-        Ok(all)
+            observer(Event::Nodes { done: all.radii.len(), of: n_nodes });
+        });
+        poor.map_or(Ok(all), Err)
     }
 
     /// The linear interpolant of `values`: on each triangle the plane through its three nodes. At a node its gradient is

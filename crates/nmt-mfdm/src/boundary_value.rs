@@ -8,10 +8,11 @@ use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
 use crate::mend::mend;
+use crate::one_star::NodeStar;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
-use crate::solve::Stage;
+use crate::solve::{Event, Stage};
 use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
@@ -21,6 +22,7 @@ use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
 use crate::weak::WeakForm;
 use crate::{galerkin, local, variational};
+use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, NodeTris};
 use std::collections::BTreeMap;
@@ -57,56 +59,26 @@ pub(crate) struct Solved {
 pub(crate) fn solve_discrete(
     discrete: Discrete,
     params: &SolveParams,
-    ended: &mut dyn FnMut(Stage),
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Solved, MfdmError> {
     params.check()?;
     let Discrete { mesh, conditions, source, fluxes } = discrete;
     let surroundings = Surroundings::new(mesh.cloud());
     let metric = surroundings.metric();
     let nearest = surroundings.nearest();
-    let (n_nodes, n_boundary) = (mesh.cloud().n_nodes(), mesh.cloud().n_boundary());
-    let interpolates = params.smoothing == 0.0 || params.formulation == Formulation::Fem;
-    let dirichlet = if interpolates { Dirichlet::Eliminated } else { Dirichlet::Rows };
-    let roles = Roles::new(conditions, mesh.cloud().n_interior(), dirichlet);
+    let n_nodes = mesh.cloud().n_nodes();
+    let roles = roles(conditions, mesh, params);
 
-    let mut stencils = if params.formulation == Formulation::Fem {
-        Stencils::constants(n_nodes)
-    } else {
-        let stars = params.star_params(n_nodes, &metric)?;
-        // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
-        let only_interior =
-            params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
-        let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
-        // The local equation of a node with a flux is ∇²u = −s there too, its polynomial meeting the flux.
-        let known = |node: NodeId| match params.formulation {
-            Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(metric.stretch())),
-            Formulation::Variational | Formulation::Fem => None,
-        };
-        let stencils = Stencils::meeting(&surroundings, &nearest, stars, range.clone(), known);
-        stencils.require(range, mesh.xy(), 1)?;
-        if params.formulation == Formulation::Local {
-            stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
-        }
-        stencils
-    };
-    ended(Stage::Stencils);
+    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
+    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, observer)?;
+    observer(Event::Ended(Stage::Stencils));
 
     let rule = params.rule()?;
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
-    let source_rule = Rule::of(SOURCE_POINTS[usize::from(params.order > 2)]).unwrap_or_else(crate::gauss::six_points);
+    let source_rule = source_rule(params);
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let hats_on_blends =
-        (params.formulation, params.trial, params.test) == (Formulation::Variational, Trial::Blended, Test::Hat);
-    let mut larger = BTreeMap::new();
-    let mended = if hats_on_blends && interpolates {
-        let weak = WeakForm::blended(mesh, &stencils, fluxes, &rule);
-        let mut system = variational::assemble(&frame.with(&stencils), &weak)?;
-        larger = mend(frame, (&surroundings, &nearest), &rule, &mut stencils, &mut system)?;
-        steady(frame, (&surroundings, &nearest), params.order, &mut system);
-        Some(system)
-    } else {
-        None
-    };
+    let mended = mended_system(frame, around, params, &rule, &mut stencils)?;
+    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
     let (stars, used_stars) = (stencils.report(), stencils.used(larger));
     let setting = frame.with(&stencils);
     let space = TrialSpace {
@@ -132,16 +104,17 @@ pub(crate) fn solve_discrete(
     let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
     drop(weak);
     // Rows are the larger part of what is held; only smoothing needs them again.
-    let stencils = (!interpolates).then_some(stencils);
-    ended(Stage::Assemble);
+    let stencils = (!interpolates(params)).then_some(stencils);
+    observer(Event::Ended(Stage::Assemble));
 
-    let Nodal { values, constants, linear } = solve_system(&system, mesh.xy(), &equations, &roles, params.solver)?;
+    let Nodal { values, constants, linear } =
+        solve_system(&system, mesh.xy(), &equations, &roles, params.solver, observer)?;
     drop(system);
     let values = match stencils {
         Some(stencils) => smoothed(&stencils, mesh.xy(), values),
         None => values,
     };
-    ended(Stage::Solve);
+    observer(Event::Ended(Stage::Solve));
 
     let field = if params.formulation == Formulation::Fem {
         NodalPolynomials::linear(mesh, &values)
@@ -149,9 +122,126 @@ pub(crate) fn solve_discrete(
         let order = params.recovery_order();
         let recovery =
             StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
-        NodalPolynomials::fit(&surroundings, &nearest, recovery, &values)?
+        NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
+}
+
+/// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
+/// finite elements, which have none.
+///
+/// # Errors
+/// As [`solve_discrete`], but for what the linear system and the recovery may say.
+pub(crate) fn star_of_equations(
+    discrete: Discrete,
+    params: &SolveParams,
+    node: NodeId,
+) -> Result<Option<NodeStar>, MfdmError> {
+    params.check()?;
+    let Discrete { mesh, conditions, source, fluxes } = discrete;
+    if params.formulation == Formulation::Fem || node.index() >= mesh.cloud().n_nodes() {
+        return Ok(None);
+    }
+    if !is_mended(params) && fluxes.of_node(node).is_none() {
+        return NodeStar::of(mesh.cloud(), params, node);
+    }
+    let surroundings = Surroundings::new(mesh.cloud());
+    let nearest = surroundings.nearest();
+    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
+    let roles = roles(conditions, mesh, params);
+    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, &mut |_| {})?;
+    let (rule, source_rule) = (params.rule()?, source_rule(params));
+    let node_tris = NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes());
+    let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+    mended_system(frame, around, params, &rule, &mut stencils)?;
+    Ok(Some(NodeStar::in_stencils(mesh.cloud(), &surroundings, &stencils, node)))
+}
+
+/// A mesh with what surrounds its nodes.
+#[derive(Clone, Copy)]
+struct Around<'a> {
+    mesh: &'a Mesh,
+    surroundings: &'a Surroundings<'a>,
+    nearest: &'a Nearest<'a>,
+}
+
+/// Whether polynomials meet their nodes' values exactly.
+fn interpolates(params: &SolveParams) -> bool {
+    params.smoothing == 0.0 || params.formulation == Formulation::Fem
+}
+
+/// Whether soft nodes are mended: hats on interpolating blends.
+fn is_mended(params: &SolveParams) -> bool {
+    let form = (params.formulation, params.trial, params.test);
+    form == (Formulation::Variational, Trial::Blended, Test::Hat) && interpolates(params)
+}
+
+fn roles(conditions: Vec<NodeCondition>, mesh: &Mesh, params: &SolveParams) -> Roles {
+    let dirichlet = if interpolates(params) { Dirichlet::Eliminated } else { Dirichlet::Rows };
+    Roles::new(conditions, mesh.cloud().n_interior(), dirichlet)
+}
+
+fn source_rule(params: &SolveParams) -> Rule {
+    Rule::of(SOURCE_POINTS[usize::from(params.order > 2)]).unwrap_or_else(crate::gauss::six_points)
+}
+
+/// Stars and rows as they are chosen, before any is mended.
+fn stencils_of_equations(
+    around: Around,
+    roles: &Roles,
+    fluxes: &Fluxes,
+    params: &SolveParams,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Stencils, MfdmError> {
+    let Around { mesh, surroundings, nearest } = around;
+    let (n_nodes, n_boundary) = (mesh.cloud().n_nodes(), mesh.cloud().n_boundary());
+    if params.formulation == Formulation::Fem {
+        return Ok(Stencils::constants(n_nodes));
+    }
+    let stars = params.star_params(n_nodes, &surroundings.metric())?;
+    // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
+    let only_interior =
+        params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
+    let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
+    // The local equation of a node with a flux is ∇²u = −s there too, its polynomial meeting the flux.
+    let stretch = surroundings.metric().stretch();
+    let known = |node: NodeId| match params.formulation {
+        Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(stretch)),
+        Formulation::Variational | Formulation::Fem => None,
+    };
+    let stencils = Stencils::meeting(surroundings, nearest, stars, range.clone(), known, observer);
+    stencils.require(range, mesh.xy(), 1)?;
+    if params.formulation == Formulation::Local {
+        stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
+    }
+    Ok(stencils)
+}
+
+/// A system whose soft nodes are mended.
+struct Mended {
+    system: LinearSystem,
+    /// Nodes in the stars that were enlarged.
+    larger: BTreeMap<NodeId, usize>,
+}
+
+/// The system of hats on blends, with the stars of soft nodes mended; `None` for all other equations.
+fn mended_system(
+    frame: Frame,
+    around: Around,
+    params: &SolveParams,
+    rule: &Rule,
+    stencils: &mut Stencils,
+) -> Result<Option<Mended>, MfdmError> {
+    if !is_mended(params) {
+        return Ok(None);
+    }
+    let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
+    let mut system = variational::assemble(&frame.with(stencils), &weak)?;
+    drop(weak);
+    let around = (around.surroundings, around.nearest);
+    let larger = mend(frame, around, rule, stencils, &mut system)?;
+    steady(frame, around, params.order, &mut system);
+    Ok(Some(Mended { system, larger }))
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.
@@ -178,6 +268,7 @@ fn solve_system(
     equations: &[Equation],
     roles: &Roles,
     choice: Solver,
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Nodal, MfdmError> {
     let mut right_sides = vec![system.rhs.clone()];
     for column in &system.hole_columns {
@@ -185,7 +276,7 @@ fn solve_system(
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
         right_sides.push(b);
     }
-    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice)?;
+    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };

@@ -65,7 +65,7 @@ impl UsedStars {
         for first in (self.first..n_nodes).step_by(BATCH) {
             let range = first..(first + BATCH).min(n_nodes);
             let known = |node: NodeId| self.known.get(&node).copied();
-            let mut stencils = Stencils::meeting(&surroundings, &nearest, params, range.clone(), known);
+            let mut stencils = Stencils::meeting(&surroundings, &nearest, params, range.clone(), known, &mut |_| {});
             let larger = self.larger.range(NodeId::of(range.start)..NodeId::of(range.end));
             stencils.replace(&surroundings, &nearest, &larger.map(|(node, size)| (*node, *size)).collect::<Vec<_>>());
             let pieces = map_chunks(range, |piece| {

@@ -77,7 +77,7 @@ pub use post::{Extreme, Extremes, Stress, StressIntegral, extremes, residuals, s
 pub use problem::{Formulation, HoleCondition, Load, Test, TorsionProblem, Trial};
 pub use repair::StarOutcome;
 pub use solution::{HoleResult, TorsionSolution};
-pub use solve::{Stage, solve, solve_observed};
+pub use solve::{Event, Stage, solve, solve_observed};
 pub use solver::{DIRECT_MAX_UNKNOWNS, Iteration, LinearSolve, Method, Solver};
 pub use star::{StarChoice, StarFinder, default_star};
 pub use stencils::{StarParams, StarReport, Stencil, Stencils};

@@ -1,17 +1,23 @@
 //! The star of one node as the equations use it, opened up: who is in it, who was passed over, and the ∇² row.
 
 use crate::basis::row;
+use crate::boundary_value::{Discrete, star_of_equations};
 use crate::error::MfdmError;
+use crate::flux::Fluxes;
 use crate::params::SolveParams;
-use crate::problem::Formulation;
+use crate::poisson::PoissonProblem;
+use crate::problem::{Formulation, TorsionProblem};
 use crate::repair::StarOutcome;
+use crate::source::Source;
 use crate::star::StarChoice;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
+use crate::system::Roles;
 use crate::weight::weight;
 use nmt_cloud::Cloud;
 use nmt_geom::NodeId;
 use nmt_geom::point::distance;
+use nmt_tri::Mesh;
 
 /// A node of a star.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +54,38 @@ pub struct NodeStar {
 }
 
 impl NodeStar {
-    /// The star of `node` that the equations of `params` use; `None` for finite elements, which have none.
+    /// The star of `node` in the equations of a torsion problem; `None` for finite elements, which have none.
+    ///
+    /// It is that of the solution: larger than others where it was mended, since it left its node soft \[D13\].
+    ///
+    /// # Errors
+    /// As [`crate::solve`], but for what the linear system and the recovery may say.
+    pub fn in_torsion(
+        problem: &TorsionProblem,
+        mesh: &Mesh,
+        params: &SolveParams,
+        node: NodeId,
+    ) -> Result<Option<Self>, MfdmError> {
+        problem.check()?;
+        let conditions = Roles::of_torsion(mesh, problem.holes);
+        let fluxes = Fluxes::default();
+        star_of_equations(Discrete { mesh, conditions, source: Source::Constant(2.0), fluxes: &fluxes }, params, node)
+    }
+
+    /// The star of `node` in the equations of a Poisson problem, as [`Self::in_torsion`].
+    ///
+    /// # Errors
+    /// As [`crate::solve_poisson`], but for what the linear system and the recovery may say.
+    pub fn in_poisson(
+        problem: &PoissonProblem,
+        mesh: &Mesh,
+        params: &SolveParams,
+        node: NodeId,
+    ) -> Result<Option<Self>, MfdmError> {
+        problem.with_discrete(mesh, |discrete| star_of_equations(discrete, params, node))
+    }
+
+    /// The star of `node` that `params` choose, before any is mended; `None` for finite elements, which have none.
     ///
     /// # Errors
     /// [`MfdmError::Order`], [`MfdmError::Smoothing`] or [`MfdmError::StarSize`] where a parameter is out of range.
@@ -61,6 +98,12 @@ impl NodeStar {
         let nearest = surroundings.nearest();
         let stars = params.star_params(cloud.n_nodes(), &surroundings.metric())?;
         let stencils = Stencils::new(&surroundings, &nearest, stars, node.index()..node.index() + 1);
+        Ok(Some(Self::in_stencils(cloud, &surroundings, &stencils, node)))
+    }
+
+    /// The star that `stencils` have.
+    pub(crate) fn in_stencils(cloud: &Cloud, surroundings: &Surroundings, stencils: &Stencils, node: NodeId) -> Self {
+        let stars = stencils.params();
         let (stencil, outcome) = (stencils.of(node), stencils.outcome(node));
         let (places, stretch) = (surroundings.stretched(), surroundings.metric().stretch());
         let stretched = |other: NodeId| distance(places[other.index()], places[node.index()]);
@@ -82,7 +125,7 @@ impl NodeStar {
         let is_hidden = |other: &NodeId| stretched(*other) < stencil.radius && !surroundings.sees(node, *other);
         let hidden = (0..cloud.n_nodes()).map(NodeId::of).filter(is_hidden).collect();
         let (asked, choice, radius) = (stars.size, stars.choice, stencil.radius);
-        Ok(Some(Self { node, asked, choice, outcome, radius, stretch, members, hidden }))
+        Self { node, asked, choice, outcome, radius, stretch, members, hidden }
     }
 
     /// Sign of the node's own coefficient in its ∇² row: −1 is the right one; 0 where there is no second derivative.

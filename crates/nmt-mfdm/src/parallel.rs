@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 /// Points per piece of work: enough to hide the cost of handing it out.
-const CHUNK: usize = 512;
+pub(crate) const CHUNK: usize = 512;
 
 /// `work` on consecutive pieces of `range`, results in order whatever the number of threads.
 pub(crate) fn map_chunks<T: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> T + Sync + Send) -> Vec<T> {

@@ -9,7 +9,7 @@ use crate::gauss::{Rule, seven_points};
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
 use crate::post::residuals_against;
-use crate::solve::Stage;
+use crate::solve::{Event, Stage};
 use crate::solver::LinearSolve;
 use crate::source::Source;
 use crate::stencils::StarReport;
@@ -94,7 +94,7 @@ pub fn solve_poisson(
     solve_poisson_observed(problem, mesh, params, &mut |_| {})
 }
 
-/// [`solve_poisson`], calling `ended` at the end of each stage.
+/// [`solve_poisson`], telling `observer` the end of each stage, and within stages how far they are.
 ///
 /// # Errors
 /// As [`solve_poisson`].
@@ -102,15 +102,10 @@ pub fn solve_poisson_observed(
     problem: &PoissonProblem,
     mesh: &Mesh,
     params: &SolveParams,
-    ended: &mut dyn FnMut(Stage),
+    observer: &mut dyn FnMut(Event),
 ) -> Result<PoissonSolution, MfdmError> {
-    let conditions = problem.conditions(mesh)?;
-    let is_free = |node: &usize| conditions[*node] == NodeCondition::Flux;
-    let free: Vec<NodeId> = (0..conditions.len()).filter(is_free).map(NodeId::of).collect();
-    let fluxes = Fluxes::new(mesh, problem.section, &problem.fluxes, &free)?;
-    let source = Source::Minus(problem.source);
-    let solved = solve_discrete(Discrete { mesh, conditions, source, fluxes: &fluxes }, params, ended)?;
-    ended(Stage::Post);
+    let solved = problem.with_discrete(mesh, |discrete| solve_discrete(discrete, params, observer))?;
+    observer(Event::Ended(Stage::Post));
     if solved.values.iter().any(|u| !u.is_finite()) {
         return Err(MfdmError::Singular { n: solved.unknowns });
     }
@@ -125,6 +120,19 @@ pub fn solve_poisson_observed(
 }
 
 impl PoissonProblem<'_> {
+    /// What `work` makes of the problem with its conditions and fluxes on a mesh.
+    pub(crate) fn with_discrete<T>(
+        &self,
+        mesh: &Mesh,
+        work: impl FnOnce(Discrete) -> Result<T, MfdmError>,
+    ) -> Result<T, MfdmError> {
+        let conditions = self.conditions(mesh)?;
+        let is_free = |node: &usize| conditions[*node] == NodeCondition::Flux;
+        let free: Vec<NodeId> = (0..conditions.len()).filter(is_free).map(NodeId::of).collect();
+        let fluxes = Fluxes::new(mesh, self.section, &self.fluxes, &free)?;
+        work(Discrete { mesh, conditions, source: Source::Minus(self.source), fluxes: &fluxes })
+    }
+
     /// The condition at each boundary node.
     fn conditions(&self, mesh: &Mesh) -> Result<Vec<NodeCondition>, MfdmError> {
         let cloud = mesh.cloud();

@@ -25,6 +25,29 @@ pub enum Stage {
     Post,
 }
 
+/// What [`solve_observed`] tells while it works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A stage has ended.
+    Ended(Stage),
+    /// Of the stage under way, so many nodes are done.
+    Nodes {
+        /// Nodes with their stars.
+        done: usize,
+        /// Nodes in all.
+        of: usize,
+    },
+    /// One more iteration of the linear solver, short of its target.
+    Iteration {
+        /// Iterations for this right side.
+        iterations: usize,
+        /// ‖b − Ax‖/‖b‖ as the recurrence has it.
+        residual: f64,
+        /// The residual that it goes on to.
+        target: f64,
+    },
+}
+
 /// Solves the Prandtl problem on a mesh; paper, eqs (16)–(18) \[D10\]–\[D14\].
 ///
 /// # Errors
@@ -49,7 +72,7 @@ pub fn solve(problem: &TorsionProblem, mesh: &Mesh, params: &SolveParams) -> Res
     solve_observed(problem, mesh, params, &mut |_| {})
 }
 
-/// [`solve`], calling `ended` at the end of each stage.
+/// [`solve`], telling `observer` the end of each stage, and within stages how far they are.
 ///
 /// # Errors
 /// As [`solve`].
@@ -57,7 +80,7 @@ pub fn solve_observed(
     problem: &TorsionProblem,
     mesh: &Mesh,
     params: &SolveParams,
-    ended: &mut dyn FnMut(Stage),
+    observer: &mut dyn FnMut(Event),
 ) -> Result<TorsionSolution, MfdmError> {
     problem.check()?;
     let discrete = Discrete {
@@ -66,10 +89,10 @@ pub fn solve_observed(
         source: Source::Constant(2.0),
         fluxes: &Fluxes::default(),
     };
-    let solved = solve_discrete(discrete, params, ended)?;
+    let solved = solve_discrete(discrete, params, observer)?;
     let unknowns = solved.unknowns;
     let solution = results(problem, mesh, solved);
-    ended(Stage::Post);
+    observer(Event::Ended(Stage::Post));
     // A number that is none is an error, not a result.
     let numbers = [solution.j, solution.torque, solution.w_t, solution.f_max.value, solution.tau_max.value];
     if numbers.iter().all(|v| v.is_finite()) { Ok(solution) } else { Err(MfdmError::Singular { n: unknowns }) }

@@ -14,6 +14,7 @@ mod vector;
 pub use choice::{DIRECT_MAX_UNKNOWNS, Iteration, LinearSolve, Method, Solver};
 
 use crate::error::MfdmError;
+use crate::solve::Event;
 use crate::system::LinearSystem;
 use amg::{Hierarchy, Symmetry};
 use csr::Csr;
@@ -55,8 +56,9 @@ pub(crate) fn solve(
     xy: &[Point],
     right_sides: &[Vec<f64>],
     choice: Solver,
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Solutions, MfdmError> {
-    solve_within(system, xy, right_sides, choice, LIMITS)
+    solve_within(system, xy, right_sides, choice, LIMITS, observer)
 }
 
 fn solve_within(
@@ -65,9 +67,10 @@ fn solve_within(
     right_sides: &[Vec<f64>],
     choice: Solver,
     limits: Limits,
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Solutions, MfdmError> {
     let iterates = choice.iterates(system.n());
-    if iterates && let Some(solutions) = iterate(&system.matrix, right_sides, limits) {
+    if iterates && let Some(solutions) = iterate(&system.matrix, right_sides, limits, observer) {
         return Ok(solutions);
     }
     let direct::Solutions { x, residual } = direct::solve(system, xy, right_sides)?;
@@ -76,7 +79,13 @@ fn solve_within(
 }
 
 /// CG or BiCGSTAB with a multigrid cycle; `None` where one right side does not converge.
-fn iterate(matrix: &Csr, right_sides: &[Vec<f64>], limits: Limits) -> Option<Solutions> {
+fn iterate(
+    matrix: &Csr,
+    right_sides: &[Vec<f64>],
+    limits: Limits,
+    observer: &mut dyn FnMut(Event),
+) -> Option<Solutions> {
+    let mut told = |iterations, residual| observer(Event::Iteration { iterations, residual, target: limits.target });
     let symmetry = if matrix.is_symmetric(SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
     let hierarchy = Hierarchy::new(matrix, symmetry)?;
     let mut room = hierarchy.workspace();
@@ -88,8 +97,8 @@ fn iterate(matrix: &Csr, right_sides: &[Vec<f64>], limits: Limits) -> Option<Sol
         let mut x = vec![0.0; b.len()];
         let cycle = |r: &[f64], z: &mut [f64]| hierarchy.cycle(r, z, &mut room);
         let iterated: Iterated = match symmetry {
-            Symmetry::Symmetric => krylov::cg(matrix, b, &mut x, limits, cycle),
-            Symmetry::Unsymmetric => krylov::bicgstab(matrix, b, &mut x, limits, cycle),
+            Symmetry::Symmetric => krylov::cg(matrix, b, &mut x, limits, cycle, &mut told),
+            Symmetry::Unsymmetric => krylov::bicgstab(matrix, b, &mut x, limits, cycle, &mut told),
         };
         if iterated.residual.is_nan() || iterated.residual > MAX_RESIDUAL {
             return None;
@@ -142,9 +151,9 @@ mod tests {
             let (system, xy) = differences(60, wind);
             let other: Vec<f64> = (0..system.n()).map(|i| f64::from(i as u32 % 7) - 3.0).collect();
             let right_sides = [system.rhs.clone(), other, vec![0.0; system.n()]];
-            let direct = solve(&system, &xy, &right_sides, Solver::Auto)?;
+            let direct = solve(&system, &xy, &right_sides, Solver::Auto, &mut |_| {})?;
             assert_eq!((direct.how.method, direct.how.iteration), (Method::Direct, None));
-            let iterated = solve(&system, &xy, &right_sides, Solver::Iterative)?;
+            let iterated = solve(&system, &xy, &right_sides, Solver::Iterative, &mut |_| {})?;
             assert_eq!((iterated.how.method, iterated.how.fell_back), (method, false));
             let iteration = iterated.how.iteration.unwrap_or_default();
             // 12 and 11 measured, three levels, 1.5.
@@ -163,7 +172,8 @@ mod tests {
     fn what_does_not_converge_falls_back_and_says_so() -> Result<(), MfdmError> {
         let (system, xy) = differences(40, 0.2);
         let limits = Limits { iterations: 2, ..LIMITS };
-        let solutions = solve_within(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, limits)?;
+        let solutions =
+            solve_within(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, limits, &mut |_| {})?;
         assert!(solutions.how.fell_back && solutions.how.method == Method::Direct);
         assert!(solutions.how.iteration.is_none() && solutions.how.residual < 1e-12);
         Ok(())
@@ -188,7 +198,7 @@ mod tests {
         }
         let xy: Vec<Point> = (0..n).map(|i| [f64::from(i), 0.0]).collect();
         for choice in Solver::ALL {
-            assert!(solve(&system, &xy, std::slice::from_ref(&system.rhs), choice).is_err(), "{choice:?}");
+            assert!(solve(&system, &xy, std::slice::from_ref(&system.rhs), choice, &mut |_| {}).is_err(), "{choice:?}");
         }
     }
 
@@ -211,10 +221,10 @@ mod tests {
             }
             system.push(&Equation { row, rhs: sound.rhs[k] });
         }
-        let iterated = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative)?;
+        let iterated = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, &mut |_| {})?;
         let iterations = iterated.how.iteration.unwrap_or_default().iterations;
         assert!((1..40).contains(&iterations), "{iterations}");
-        let direct = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Direct)?;
+        let direct = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Direct, &mut |_| {})?;
         assert!(largest_difference(&iterated.x[0], &direct.x[0]) < 1e-9); // residual 1e-10
         Ok(())
     }
@@ -227,7 +237,7 @@ mod tests {
         let solve = |threads: usize| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
             let mut solutions =
-                pool.install(|| solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Auto))?;
+                pool.install(|| solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Auto, &mut |_| {}))?;
             assert_eq!(solutions.how.method, Method::Bicgstab);
             Ok(solutions.x.swap_remove(0))
         };

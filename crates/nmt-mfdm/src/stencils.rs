@@ -7,6 +7,7 @@ use crate::mwls::Mwls;
 use crate::parallel::take_pieces;
 use crate::repair::{Demand, StarOutcome, sound_star};
 use crate::slopes::{KnownSlopes, Slopes};
+use crate::solve::Event;
 use crate::star::{StarChoice, StarFinder};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
@@ -125,18 +126,20 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
-        Self::meeting(surroundings, nearest, params, range, |_| None)
+        Self::meeting(surroundings, nearest, params, range, |_| None, &mut |_| {})
     }
 
     /// As [`Self::new`], the polynomials meeting what is `known` of the gradient at their nodes: their rows hold for values
-    /// less the known slope.
+    /// less the known slope; telling how many nodes are done.
     pub(crate) fn meeting(
         surroundings: &Surroundings,
         nearest: &Nearest,
         params: StarParams,
         range: Range<usize>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+        observer: &mut dyn FnMut(Event),
     ) -> Self {
+        let of = range.len();
         let metric = surroundings.metric();
         let first = range.start;
         let part = |piece: Range<usize>| {
@@ -165,6 +168,7 @@ impl Stencils {
             all.radii.extend(part.radii);
             all.outcomes.extend(part.outcomes);
             all.known.extend(part.known);
+            observer(Event::Nodes { done: all.outcomes.len(), of });
         });
         all
     }
@@ -181,6 +185,11 @@ impl Stencils {
         self.nodes.extend(star);
         self.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
         self.outcomes.push(outcome);
+    }
+
+    /// How the stars are chosen.
+    pub(crate) fn params(&self) -> StarParams {
+        self.params
     }
 
     /// Rows of a star.

@@ -34,7 +34,12 @@ pub struct Metric {
 impl Metric {
     /// The metric of a cloud: stretched where the ratio of its spacings is between 1.25 and 2, and beyond where its
     /// clearances are scaled, so that no strip along the boundary is bare.
+    ///
+    /// A graded cloud is square already.
     pub fn of(cloud: &Cloud) -> Self {
+        if cloud.is_graded() {
+            return Self::plain();
+        }
         let h = cloud.max_spacing();
         let stretch = cloud.spacing().map(|own| if own > 0.0 { h / own } else { 1.0 });
         let ratio = stretch[0].max(stretch[1]);

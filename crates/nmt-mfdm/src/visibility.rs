@@ -5,7 +5,8 @@ use nmt_geom::point::{cross, distance, dot, lerp, sub};
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_geom::{Bbox, Location, LoopId, NodeId, Point, RealBoundary, SegmentIndex, segment};
 
-/// A pair of nodes is hidden where the middle between them is outside by more than this fraction of max(h_x, h_y).
+/// A pair of nodes is hidden where the middle between them is outside by more than this fraction of max(h_x, h_y), or of the
+/// smaller spacing of the two.
 const OUTSIDE_FRACTION: f64 = 0.25;
 
 /// Of two boundary nodes with the outside between them, the way along the boundary is at most this many times their
@@ -25,7 +26,7 @@ pub struct Visibility {
     segments: SegmentIndex,
     n_boundary: usize,
     margin: f64,              // user's length unit
-    outside: f64,             // user's length unit
+    spacings: Vec<f64>,       // of the boundary nodes
     places: Vec<Place>,       // of the boundary nodes
     corners: Vec<[Point; 2]>, // at the first node of each segment: directions to the next and to the last node
 }
@@ -38,7 +39,7 @@ impl Visibility {
             segments: boundary.index().clone(),
             n_boundary: cloud.n_boundary(),
             margin: SAME_POINT_REL * cloud.size(),
-            outside: OUTSIDE_FRACTION * cloud.max_spacing(),
+            spacings: (0..cloud.n_boundary()).map(|node| cloud.local_spacing(NodeId::of(node))).collect(),
             places: places(boundary),
             corners: corners(boundary),
         }
@@ -105,7 +106,8 @@ impl Visibility {
         let along = (a.s - b.s).abs();
         let way = along.min(a.perimeter - along);
         let detour = a.ring != b.ring || way > MAX_DETOUR * distance(p, q) + self.margin;
-        detour || !self.segments.any_within(middle, self.outside)
+        let spacing = self.spacings[centre.index()].min(self.spacings[other.index()]);
+        detour || !self.segments.any_within(middle, OUTSIDE_FRACTION * spacing)
     }
 }
 

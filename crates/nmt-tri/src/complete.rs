@@ -7,7 +7,7 @@
 //!    ├─ bare ─────┤
 //! ```
 
-use crate::eliminate::tiny_area;
+use crate::eliminate::TinyArea;
 use crate::error::MeshError;
 use nmt_cloud::Cloud;
 use nmt_geom::point::{cross, sub};
@@ -47,7 +47,7 @@ struct Gaps<'a> {
     /// Pieces with a gap on their left, from node to node; those of the real boundary are filled first.
     front: BTreeSet<[u32; 2]>,
     is_segment: BTreeSet<[u32; 2]>,
-    tiny: f64, // area, square of the user's length unit
+    tiny: TinyArea<'a>,
 }
 
 fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
@@ -57,8 +57,7 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 impl<'a> Gaps<'a> {
     fn new(cloud: &'a Cloud, triangles: Vec<[u32; 3]>) -> Self {
         let is_segment = cloud.boundary().segments().iter().map(|s| [s.from.0, s.to.0]).collect();
-        let envelope = cloud.boundary().envelope();
-        let tiny = tiny_area(envelope.width() * envelope.height());
+        let tiny = TinyArea::of(cloud);
         Self { cloud, triangles, front: BTreeSet::new(), is_segment, tiny }
     }
 
@@ -100,8 +99,8 @@ impl<'a> Gaps<'a> {
     /// such gaps, and filled alone they would be what was dropped as too small.
     fn widen_slivers(&mut self) {
         loop {
-            let narrow: BTreeSet<[u32; 2]> =
-                self.gaps().into_iter().filter(|gap| self.area(gap) < self.tiny).flatten().collect();
+            let is_narrow = |gap: &Vec<[u32; 2]>| self.area(gap) < self.tiny.at(gap.iter().map(|piece| piece[0]));
+            let narrow: BTreeSet<[u32; 2]> = self.gaps().into_iter().filter(is_narrow).flatten().collect();
             let before = self.triangles.len();
             // A triangle whose side leads the other way lies beyond the front.
             self.triangles.retain(|nodes| !sides(*nodes).iter().any(|&[a, b]| narrow.contains(&[b, a])));
@@ -183,7 +182,7 @@ impl<'a> Gaps<'a> {
             let area = 0.5 * cross(sub(q, p), sub(at, p));
             if node != a && node != b && side(p, q, at) == Ordering::Greater && area > 0.0 {
                 let distance = OrderedDistance(segment::distance_to(at, p, q));
-                candidates.insert((area < self.tiny, distance, node), ());
+                candidates.insert((area < self.tiny.at([a, b, node]), distance, node), ());
             }
         }
         let fits = |node: &u32| {

@@ -47,7 +47,7 @@ pub fn smooth(mesh: &Mesh, sweeps: usize) -> Cloud {
             let (from, least) = (xy[node], LEAST_SHARE * middle.mean_area);
             for halving in 0..=HALVINGS {
                 let to = lerp(from, middle.at, 0.5f64.powi(halving as i32));
-                if ring.keeps_areas(&xy, to, least) && cloud.clearance().holds(to, index) {
+                if ring.keeps_areas(&xy, to, least) && cloud.clearance_of(NodeId::of(node)).holds(to, index) {
                     xy[node] = to;
                     break;
                 }

@@ -1,18 +1,21 @@
-//! The formulations side by side on the same cloud and mesh: what each costs and how near its J comes.
+//! The formulations side by side on the same cloud and mesh: what each costs and how near its J comes, or the u of a
+//! Poisson problem.
 //!
 //! [`compare`] solves every subdomain by every one of [`methods`], [`Comparison`] holds the rows, [`text`] and
 //! [`Comparison::json`] write them down, [`unknowns_svg`] and [`time_svg`] draw them. See docs/compare.md.
 
 mod picture;
+mod poisson;
 mod text;
 
 pub use picture::{time_svg, unknowns_svg};
+pub use poisson::PoissonFigures;
 pub use text::text;
 
 use crate::error::NmtError;
-use crate::pipeline::{MeshPart, elimination_fault, torsion_fault};
+use crate::pipeline::{MeshPart, elimination_fault, torsion};
 use crate::problem::Problem;
-use nmt_mfdm::{Formulation, MfdmError, SolveParams, Test, TorsionProblem, Trial, solve};
+use nmt_mfdm::{Formulation, MfdmError, SolveParams, Test, Trial, solve};
 use serde::Serialize;
 
 /// One way to solve: what is varied in a comparison. All else is the default of its order.
@@ -105,8 +108,10 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Outcome {
-    /// It was solved.
+    /// Torsion was solved.
     Solved(Figures),
+    /// A Poisson problem was solved.
+    Poisson(PoissonFigures),
     /// It was not.
     Failed {
         /// What the numerics say, with the remedy.
@@ -132,11 +137,45 @@ pub struct Figures {
 }
 
 impl Row {
-    /// Its numbers, where it was solved.
+    fn new(method: Method, part: &MeshPart, density: [usize; 2], outcome: Outcome, seconds: f64) -> Self {
+        let Method { formulation, order, trial, test } = method;
+        let is_variational = formulation == Formulation::Variational;
+        Self {
+            subdomain: part.name.clone(),
+            density,
+            nodes: part.mesh.cloud().n_nodes(),
+            method: method.name(),
+            formulation: formulation.name(),
+            order,
+            trial: is_variational.then(|| trial.name()),
+            test: is_variational.then(|| test.name()),
+            outcome,
+            seconds,
+        }
+    }
+
+    /// The numbers of torsion, where it was solved.
     pub fn figures(&self) -> Option<&Figures> {
         match &self.outcome {
             Outcome::Solved(figures) => Some(figures),
-            Outcome::Failed { .. } => None,
+            Outcome::Poisson(_) | Outcome::Failed { .. } => None,
+        }
+    }
+
+    /// The numbers of a Poisson problem, where it was solved.
+    pub fn poisson(&self) -> Option<&PoissonFigures> {
+        match &self.outcome {
+            Outcome::Poisson(figures) => Some(figures),
+            Outcome::Solved(_) | Outcome::Failed { .. } => None,
+        }
+    }
+
+    /// Stars whose polynomial is of a lower order than asked for.
+    fn order_lowered(&self) -> usize {
+        match &self.outcome {
+            Outcome::Solved(figures) => figures.order_lowered,
+            Outcome::Poisson(figures) => figures.order_lowered,
+            Outcome::Failed { .. } => 0,
         }
     }
 }
@@ -150,8 +189,14 @@ pub struct Comparison {
     pub title: String,
     /// Name of the length unit.
     pub units: String,
-    /// What J is held against.
+    /// What J, or u, is held against.
     pub reference: String,
+    /// f of ∇²u = f, where it is a Poisson problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// Its exact u, where it is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<String>,
     /// J of the exact solution, where it was given.
     #[serde(rename = "exact_J", skip_serializing_if = "Option::is_none")]
     pub exact_j: Option<f64>,
@@ -162,11 +207,16 @@ pub struct Comparison {
 impl Comparison {
     /// Without rows yet.
     pub fn new(problem: &Problem, exact_j: Option<f64>) -> Self {
+        let poisson = problem.solve.poisson.as_ref();
+        let exact = poisson.and_then(|settings| Some(settings.exact.as_ref()?.text().to_owned()));
+        let is_exact = exact_j.is_some() || exact.is_some();
         Self {
             nmt: env!("CARGO_PKG_VERSION").into(),
             title: problem.title.clone(),
             units: problem.units.clone(),
-            reference: exact_j.map_or_else(|| Method::REFERENCE.name(), |_| "exact".into()),
+            reference: if is_exact { "exact".into() } else { Method::REFERENCE.name() },
+            source: poisson.map(|settings| settings.source.text().to_owned()),
+            exact,
             exact_j,
             rows: Vec::new(),
         }
@@ -180,9 +230,14 @@ impl Comparison {
         serde_json::to_string_pretty(self).map(|text| text + "\n")
     }
 
-    /// Whether no method could solve anything.
-    pub fn is_failure(&self) -> bool {
-        self.rows.iter().all(|row| row.figures().is_none())
+    /// Rows without numbers: methods that could not solve the problem.
+    pub fn n_failures(&self) -> usize {
+        self.rows.iter().filter(|row| matches!(row.outcome, Outcome::Failed { .. })).count()
+    }
+
+    /// Whether errors can be drawn: against an exact J or an exact u.
+    pub fn has_errors(&self) -> bool {
+        self.exact_j.is_some() || self.exact.is_some()
     }
 
     /// Rows by cloud: one slice a subdomain and density.
@@ -191,40 +246,39 @@ impl Comparison {
     }
 }
 
-/// Solves every subdomain by every method; the file's load, condition on holes and shear moduli hold, its formulation,
-/// order and star do not. `clock` returns seconds since a moment of the caller's choice.
+/// Solves every subdomain by every method; the file's load, condition on holes and shear moduli hold, or its data of a
+/// Poisson problem; its formulation, order and star do not. `clock`, told the method that begins or ends, returns seconds
+/// since a moment of the caller's choice.
 ///
-/// J is held against `exact_j` or, without it, against that of [`Method::REFERENCE`] on the same cloud. A method that fails
-/// says why in its row.
+/// J is held against `exact_j`, u against the file's `exact`; without it, both are held against those of
+/// [`Method::REFERENCE`] on the same cloud. A method that fails says why in its row.
 ///
 /// # Errors
-/// [`NmtError::Problem`] where steps of elimination are left out and the mesh is not sound without them, or where it is a
-/// Poisson problem.
+/// [`NmtError::Problem`] where steps of elimination are left out and the mesh is not sound without them, or where a formula
+/// of a Poisson problem is not finite.
 pub fn compare(
     problem: &Problem,
     meshes: &[MeshPart],
     exact_j: Option<f64>,
-    clock: &mut dyn FnMut() -> f64,
+    clock: &mut dyn FnMut(&Method) -> f64,
 ) -> Result<Vec<Row>, NmtError> {
-    let remedy = "leave it out for torsion, or give `exact` and see the errors of nmt solve FILE --formulation …";
-    if let Some(fault) = torsion_fault(problem, "has no J to compare", remedy) {
-        return Err(NmtError::Problem(vec![fault]));
-    }
     if let Some(fault) = meshes.iter().find_map(|part| elimination_fault(problem, part)) {
         return Err(NmtError::Problem(vec![fault]));
     }
     let mut rows = Vec::with_capacity(meshes.len() * methods().len());
+    if let Some(settings) = &problem.solve.poisson {
+        for (subdomain, part) in problem.subdomains.iter().zip(meshes) {
+            rows.extend(poisson::rows(problem, subdomain, settings, part, clock)?);
+        }
+        return Ok(rows);
+    }
     for (subdomain, part) in problem.subdomains.iter().zip(meshes) {
-        let torsion = TorsionProblem {
-            shear_modulus: subdomain.shear_modulus,
-            load: problem.solve.load,
-            holes: problem.solve.holes,
-        };
+        let torsion = torsion(problem, subdomain);
         let mut runs = Vec::with_capacity(methods().len());
         for method in methods() {
-            let start = clock();
+            let start = clock(&method);
             let solution = solve(&torsion, &part.mesh, &method.params());
-            runs.push(Run { method, solution, seconds: clock() - start });
+            runs.push(Run { method, solution, seconds: clock(&method) - start });
         }
         let of_reference = || {
             let run = runs.iter().find(|run| run.method == Method::REFERENCE)?;
@@ -245,8 +299,6 @@ struct Run {
 
 impl Run {
     fn row(&self, part: &MeshPart, density: [usize; 2], reference: Option<f64>) -> Row {
-        let Method { formulation, order, trial, test } = self.method;
-        let is_variational = formulation == Formulation::Variational;
         let outcome = match &self.solution {
             Ok(solution) => Outcome::Solved(Figures {
                 unknowns: solution.unknowns,
@@ -257,18 +309,7 @@ impl Run {
             }),
             Err(error) => Outcome::Failed { error: error.to_string() },
         };
-        Row {
-            subdomain: part.name.clone(),
-            density,
-            nodes: part.mesh.cloud().n_nodes(),
-            method: self.method.name(),
-            formulation: formulation.name(),
-            order,
-            trial: is_variational.then(|| trial.name()),
-            test: is_variational.then(|| test.name()),
-            outcome,
-            seconds: self.seconds,
-        }
+        Row::new(self.method, part, density, outcome, self.seconds)
     }
 }
 

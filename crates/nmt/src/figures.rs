@@ -18,6 +18,7 @@ struct Drawn<'a> {
     name: &'a str,
     cloud: &'a Cloud,
     marks: Vec<NodeMark>,
+    spacings: Vec<f64>, // of a graded cloud
     loops: Vec<Vec<u32>>,
     triangles: Vec<[u32; 3]>,
 }
@@ -35,6 +36,10 @@ impl<'a> Drawn<'a> {
             name,
             cloud,
             marks: (0..cloud.n_nodes()).map(mark).collect(),
+            spacings: match cloud.is_graded() {
+                true => (0..cloud.n_nodes()).map(|node| cloud.local_spacing(NodeId::of(node))).collect(),
+                false => Vec::new(),
+            },
             loops: (0..boundary.n_loops()).map(ring).collect(),
             triangles: Vec::new(),
         }
@@ -50,6 +55,7 @@ impl<'a> Drawn<'a> {
             name: self.name,
             xy: self.cloud.xy(),
             marks: &self.marks,
+            spacings: &self.spacings,
             loops: &self.loops,
             triangles: &self.triangles,
         }

@@ -1,10 +1,11 @@
-//! Files that other tools open: one format a file.
+//! Files that other tools open: one format a file, written piece by piece to whatever takes bytes.
 
 mod csv;
 mod edges;
 mod fields;
 mod msh;
 mod stars;
+mod text;
 mod vtu;
 
 pub use csv::{csv_of_clouds, csv_of_solutions};

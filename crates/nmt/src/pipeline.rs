@@ -6,15 +6,18 @@
 mod poisson;
 
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
+pub(crate) use poisson::{poisson_on, solve_on};
 
 use crate::error::NmtError;
+use crate::problem::GradingSettings;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
-use nmt_cloud::{Cloud, CloudError, CloudParams, Section, generate};
+use crate::report::place;
+use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Section, SpacingFunction, generate};
 use nmt_merge::{EdgeNodes, Planned, conform};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
 
-/// A stage of the pipeline; an observer is told when one ends, so that whoever calls holds the clock.
+/// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Boundary and interior nodes.
@@ -31,8 +34,33 @@ pub enum Stage {
     Post,
 }
 
-/// Told the subdomain (by its number) and the stage that has just ended.
-pub type Observer<'a> = dyn FnMut(usize, Stage) + 'a;
+/// What an observer is told, so that whoever calls holds the clock and shows how far it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A stage begins.
+    Begun(Stage),
+    /// A stage has ended.
+    Ended(Stage),
+    /// Of the stage under way, so many nodes are done.
+    Nodes {
+        /// Nodes that are done.
+        done: usize,
+        /// Nodes in all.
+        of: usize,
+    },
+    /// One more iteration of the linear solver, short of its target; several right sides, one a hole, are solved in turn.
+    Iteration {
+        /// Iterations for this right side.
+        iterations: usize,
+        /// ‖b − Ax‖/‖b‖, from 1.
+        residual: f64,
+        /// The residual that it goes on to.
+        target: f64,
+    },
+}
+
+/// Told the subdomain (by its number) and what has happened there.
+pub type Observer<'a> = dyn FnMut(usize, Event) + 'a;
 
 /// One subdomain with its cloud.
 #[derive(Clone, Debug)]
@@ -118,6 +146,7 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
     let mut faults = Vec::new();
     let shared = shared_nodes(problem);
     for (k, subdomain) in problem.subdomains.iter().enumerate() {
+        observer(k, Event::Begun(Stage::Cloud));
         let section = section(subdomain);
         let edge_nodes = shared.get(k).cloned().unwrap_or_default();
         match generate(&section, &CloudParams { edge_nodes, ..cloud_params(problem, subdomain) }) {
@@ -130,7 +159,7 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
             }),
             Err(error) => faults.push(cloud_fault(problem, subdomain, error)),
         }
-        observer(k, Stage::Cloud);
+        observer(k, Event::Ended(Stage::Cloud));
     }
     faults.extend(problem.subdomains.iter().filter_map(|subdomain| star_fault(problem, subdomain, &parts)));
     if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
@@ -167,6 +196,7 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
         nodes: subdomain.nodes,
         hole_nodes: subdomain.holes.iter().map(|hole| hole.nodes).collect(),
         edge_nodes: Vec::new(),
+        grading: subdomain.grading.as_ref().map(grading),
         division: subdomain.division,
         irregularity: subdomain.irregularity,
         seed: problem.solve.seed,
@@ -176,19 +206,27 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
     }
 }
 
+/// How the spacing varies, as the cloud takes it.
+fn grading(settings: &GradingSettings) -> Grading {
+    let function = settings.density.as_ref().map(|density| {
+        let formula = density.expression.clone();
+        SpacingFunction::new(move |p| formula.eval(&p))
+    });
+    Grading { function, refinements: settings.refine.clone(), ..Grading::default() }
+}
+
 /// A fault of the cloud in the terms of the file.
 fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> crate::problem::ProblemError {
     let item = format!("subdomain \"{}\"", subdomain.name);
+    let grading_place = subdomain.grading.as_ref().map_or(&subdomain.nodes_place, |grading| &grading.place);
     let at = |place, message: String, remedy: String| problem.source.error(place, &item, message, remedy);
     match error {
-        CloudError::NoInterior { remedy } => {
-            at(&subdomain.nodes_place, "the cloud has no interior node".into(), remedy)
-        }
+        CloudError::NoInterior { remedy } => at(grading_place, "the cloud has no interior node".into(), remedy),
         CloudError::BoundaryCrosses { at: p, remedy } => at(
-            &subdomain.nodes_place,
+            grading_place,
             format!(
                 "the polygon through the boundary nodes crosses itself near {}: too few nodes for the curves",
-                crate::report::place(p)
+                place(p)
             ),
             remedy,
         ),
@@ -196,6 +234,20 @@ fn cloud_fault(problem: &Problem, subdomain: &Subdomain, error: CloudError) -> c
             let places = subdomain.edge_places.iter().chain(subdomain.holes.iter().flat_map(|h| &h.edge_places));
             let place = places.clone().nth(edge).unwrap_or(&subdomain.place);
             at(place, source.to_string(), "correct this edge".into())
+        }
+        CloudError::NotASpacing { at: p, value } => {
+            let density = subdomain.grading.as_ref().and_then(|grading| grading.density.as_ref());
+            let message = format!("`density` is {value} at {}, where a spacing must be a positive number", place(p));
+            let remedy = match value <= 0.0 {
+                true => "give it a least value, for example max(…, 0.001)",
+                false => "correct the formula, so that it is finite everywhere in the subdomain",
+            };
+            at(density.map_or(grading_place, |density| &density.place), message, remedy.into())
+        }
+        CloudError::TooFine { spacing, limit, place } => {
+            let message =
+                format!("with spacings down to {spacing:.1e} there would be more than {limit:.0e} nodes{place}");
+            at(grading_place, message, "ask for larger ones, or let them grow faster".into())
         }
         other => at(&subdomain.nodes_place, other.to_string(), "choose other densities".into()),
     }
@@ -231,13 +283,14 @@ pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer
             }),
             MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
         };
+        observer(k, Event::Begun(Stage::Mesh));
         let (mut mesh, mut census) = triangulate(cloud).map_err(failed)?;
         let before = (*sweeps > 0).then(|| quality(&mesh)).flatten();
         if before.is_some() {
             (mesh, census) = triangulate(smooth(&mesh, *sweeps)).map_err(failed)?;
         }
         let smoothing = before.map(|before| Smoothing { sweeps: *sweeps, before });
-        observer(k, Stage::Mesh);
+        observer(k, Event::Ended(Stage::Mesh));
         Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census, smoothing })
     };
     clouds.into_iter().enumerate().map(mesh).collect()
@@ -273,17 +326,17 @@ pub fn solutions(
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
         let params = problem.solve.params(subdomain.formulation);
-        let torsion = TorsionProblem {
-            shear_modulus: subdomain.shear_modulus,
-            load: problem.solve.load,
-            holes: problem.solve.holes,
-        };
-        let mut ended = |stage: nmt_mfdm::Stage| observer(k, stage.into());
-        let solution = solve_observed(&torsion, &part.mesh, &params, &mut ended)
+        let torsion = torsion(problem, subdomain);
+        let solution = solve_observed(&torsion, &part.mesh, &params, &mut of_solution(k, observer))
             .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
         Ok(SolvedPart { part, params, solution })
     };
     meshes.into_iter().enumerate().map(solve).collect()
+}
+
+/// The torsion problem of a subdomain.
+pub(crate) fn torsion(problem: &Problem, subdomain: &Subdomain) -> TorsionProblem {
+    TorsionProblem { shear_modulus: subdomain.shear_modulus, load: problem.solve.load, holes: problem.solve.holes }
 }
 
 /// A Poisson problem where torsion is asked for: what it `does` instead of that, and the remedy.
@@ -300,6 +353,27 @@ pub(crate) fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<cr
     let message =
         format!("without all steps of `elim` the mesh of subdomain \"{}\" cannot be solved on: {error}", part.name);
     Some(problem.source.error(place, "[mesh]", message, "leave `elim` out"))
+}
+
+/// Tells what nmt-mfdm tells of subdomain `k`, the beginning of its stages included: each begins where the one before ends.
+pub(crate) fn of_solution<'a>(k: usize, observer: &'a mut Observer) -> impl FnMut(nmt_mfdm::Event) + 'a {
+    observer(k, Event::Begun(Stage::Stencils));
+    move |event| match event {
+        nmt_mfdm::Event::Ended(stage) => {
+            observer(k, Event::Ended(stage.into()));
+            let next = match stage {
+                nmt_mfdm::Stage::Stencils => Some(Stage::Assemble),
+                nmt_mfdm::Stage::Assemble => Some(Stage::Solve),
+                nmt_mfdm::Stage::Solve => Some(Stage::Post),
+                nmt_mfdm::Stage::Post => None,
+            };
+            next.into_iter().for_each(|next| observer(k, Event::Begun(next)));
+        }
+        nmt_mfdm::Event::Nodes { done, of } => observer(k, Event::Nodes { done, of }),
+        nmt_mfdm::Event::Iteration { iterations, residual, target } => {
+            observer(k, Event::Iteration { iterations, residual, target });
+        }
+    }
 }
 
 impl From<nmt_mfdm::Stage> for Stage {

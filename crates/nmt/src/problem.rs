@@ -12,6 +12,8 @@
 mod check;
 mod error;
 mod formula;
+mod grading;
+mod habits;
 mod limits;
 mod poisson;
 mod read;
@@ -24,6 +26,7 @@ mod tree;
 
 pub use error::{Place, ProblemError, Source};
 pub use formula::Formula;
+pub use grading::GradingSettings;
 pub use schema::{Hole, MeshMethod, MeshSettings, Overrides, PoissonSettings, Problem, SolveSettings, Subdomain};
 
 use error::Faults;
@@ -81,6 +84,7 @@ fn subdomain(draft: SubdomainDraft) -> Option<Subdomain> {
         edge_clearance: draft.edge_clearance,
         node_clearance: draft.node_clearance,
         conforming: draft.conforming,
+        grading: draft.grading,
         edge_places: edge_places(&contour),
         contour_place: contour.place.into(),
         contour: contour.outline,

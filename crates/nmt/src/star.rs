@@ -1,6 +1,6 @@
 //! The star of one node, to be looked at: `nmt plot star`.
 
-use crate::pipeline::MeshPart;
+use crate::pipeline::{MeshPart, poisson_on, torsion};
 use crate::problem::Problem;
 use crate::report::place;
 use nmt_geom::NodeId;
@@ -83,8 +83,19 @@ impl<'a> StarView<'a> {
             return Err(StarError::Node { node, subdomain: part.name.clone(), last });
         }
         let params = problem.solve.params(own.formulation);
-        let star = NodeStar::of(cloud, &params, NodeId::of(node))?.ok_or(StarError::NoStars)?;
-        Ok(Self { part, params, star })
+        let id = NodeId::of(node);
+        let star = match &problem.solve.poisson {
+            Some(settings) => {
+                poisson_on(own, settings, part, |poisson| NodeStar::in_poisson(poisson, &part.mesh, &params, id))
+            }
+            None => NodeStar::in_torsion(&torsion(problem, own), &part.mesh, &params, id),
+        };
+        // Where the data have no value somewhere, there are no equations yet, and the star is the one to be mended.
+        let star = match star {
+            Err(MfdmError::Datum { .. }) => NodeStar::of(cloud, &params, id),
+            other => other,
+        };
+        Ok(Self { part, params, star: star?.ok_or(StarError::NoStars)? })
     }
 
     /// What there is to say of the star as a whole, a sentence a line.

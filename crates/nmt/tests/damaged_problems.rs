@@ -70,6 +70,11 @@ const CASES: &[Case] = &[
     case("a table twice", &[("[solve]", "[solve]\norder = 2\n[solve]")]),
     case("a number with a leading zero", &[("0.25", "00.25")]),
     case("two syntax errors on two lines", &[("\"m\"", "m"), ("= 1.0", "= 1.0.0")]),
+    case("a number that begins with its point", &[("0.25", ".25")]),
+    case("a decimal comma", &[("0.25", "0,25")]),
+    case("pairs in parentheses", &[("[41, 21]", "(41, 21)")]),
+    case("a formula in place of a number", &[("[41, 21]", "[41, 7*3]")]),
+    case("a formula in quotes in place of a number", &[("irregularity = 0.25", "irregularity = \"1/4\"")]),
     case("an unknown division", &[("irregularity = 0.25", "irregularity = 0.25\ndivision = \"chords\"")]),
     case("an unknown unit of clearances", &[("irregularity = 0.25", "irregularity = 0.25\nclearance = \"both\"")]),
     case("an unknown way to a mesh", &[("[solve]", "[mesh]\nmethod = \"delaunay\"\n[solve]")]),
@@ -129,6 +134,41 @@ const CASES: &[Case] = &[
     case("a shear modulus of 0", &[("shear_modulus = 1.0", "shear_modulus = 0")]),
     case("an infinite shear modulus", &[("shear_modulus = 1.0", "shear_modulus = inf")]),
     case("a shear modulus of a wrong kind", &[("shear_modulus = 1.0", "shear_modulus = \"steel\"")]),
+    // A spacing that varies: put in place of the irregularity.
+    case("a density that is a number", &[("irregularity = 0.25", "density = 0.01")]),
+    case("a density that does not parse", &[("irregularity = 0.25", "density = \"0.01 + 2x\"")]),
+    case("a density of another variable", &[("irregularity = 0.25", "density = \"0.01 + r\"")]),
+    case("a graded cloud divided by chords", &[("irregularity = 0.25", "density = \"0.1\"\ndivision = \"chord\"")]),
+    case(
+        "a graded cloud with scaled clearances",
+        &[("irregularity = 0.25", "refine = [{ edge = \"crown\", size = 0.01 }]\nclearance = \"scaled\"")],
+    ),
+    case("a refinement that is no list", &[("irregularity = 0.25", "refine = { point = [1, 1], size = 0.01 }")]),
+    case("an empty list of refinements", &[("irregularity = 0.25", "refine = []")]),
+    case("a refinement that is no table", &[("irregularity = 0.25", "refine = [[1, 1]]")]),
+    case(
+        "refinements of nothing, of two things, and without a size",
+        &[(
+            "irregularity = 0.25",
+            "refine = [{ size = 0.01 }, { point = [1, 1], edge = \"crown\", size = 0.01 }, { point = [1, 1] }]",
+        )],
+    ),
+    case(
+        "sizes and growths out of range",
+        &[(
+            "irregularity = 0.25",
+            "refine = [\n  { point = [0, 0], size = 0, growth = 0 },\n  { point = [0, 0], size = -1, growth = 0.6 },\n  \
+             { point = [0, 0], size = 1e-9, growth = nan },\n  { point = [0, inf], size = inf },\n]",
+        )],
+    ),
+    case(
+        "edges that do not exist, and a misspelt key",
+        &[(
+            "irregularity = 0.25",
+            "refine = [{ edge = \"crwon\", size = 0.01 }, { edge = 3, size = 0.01 }, { edge = \"e9\", size = 0.01 }, \
+             { edge = \"bore/e1\", sise = 0.01 }]",
+        )],
+    ),
     case("clearances out of range", &[("irregularity = 0.25", "edge_clearance = -0.1\nnode_clearance = 2.5")]),
     case("an unknown formulation of a subdomain", &[("irregularity = 0.25", "formulation = \"fvm\"")]),
     // Shapes.

@@ -227,3 +227,31 @@ fn torsion_is_not_asked_of_a_poisson_problem_nor_the_other_way_round() {
     let error = nmt::pipeline::poisson_solutions(&torsion, Vec::new(), &mut |_, _| {}).expect_err("a fault");
     assert!(error.to_string().contains("the problem has no `source`"), "{error}");
 }
+
+#[test]
+fn a_flux_of_a_whole_hole_is_that_of_all_its_edges_but_those_with_their_own() {
+    let solved = |hole: &str| {
+        let text = format!(
+            "[[subdomain]]\nnodes = [21, 21]\nrectangle = {{ from = [0, 0], to = [1, 1] }}\n\
+             [[subdomain.hole]]\n{hole}\n[solve]\nsource = \"1\"\n"
+        );
+        let problem = Problem::parse("hole.toml", &text, &Overrides::default()).expect("a sound problem");
+        match solve_any(&problem).expect("a solution") {
+            nmt::pipeline::Solved::Poisson(mut parts) => parts.remove(0),
+            nmt::pipeline::Solved::Torsion(_) => unreachable!("a source makes it a Poisson problem"),
+        }
+    };
+    let (line, own) = ("{ line = true, neumann = \"x + y\" }", "{ line = true, neumann = \"2\" }");
+    let each = format!("outline = [[0.4, 0.4], {line}, [0.6, 0.4], {own}, [0.5, 0.6], {line}]");
+    let whole = format!("neumann = \"x + y\"\noutline = [[0.4, 0.4], [0.6, 0.4], {own}, [0.5, 0.6]]");
+    let [each, whole] = [solved(&each), solved(&whole)];
+    assert_eq!(each.solution.u, whole.solution.u);
+    let of_hole: Vec<&str> = whole.data.fluxes.iter().flatten().map(|flux| flux.text()).collect();
+    assert_eq!(of_hole, ["x + y", "2", "x + y"]);
+    // And beside a circle it is what it is among its keys.
+    let [beside, among] = [
+        solved("neumann = \"1\"\ncircle = { centre = [0.5, 0.5], radius = 0.2 }"),
+        solved("circle = { centre = [0.5, 0.5], radius = 0.2, neumann = \"1\" }"),
+    ];
+    assert_eq!(beside.solution.u, among.solution.u);
+}

@@ -1,9 +1,9 @@
 //! `nmt solve`: torsion of the section, or the Poisson problem of the file.
 
-use super::{finish, load};
+use super::{finish, load, observer, out_dir};
 use crate::args::SolveArgs;
 use crate::exit::Failure;
-use crate::files::OutDir;
+use crate::progress::Progress;
 use crate::timing::Stopwatch;
 use nmt::figures::{edges_svg, mesh_svg, nodes_svg, solved_svg};
 use nmt::io::{NodeFields, csv_of_edges, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
@@ -11,29 +11,30 @@ use nmt::pipeline::{Solved, clouds, meshes, solved};
 use nmt::report::Report;
 
 /// Runs the command.
-pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
+pub fn solve(args: &SolveArgs, progress: &Progress) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
-    let mut lap = |k, stage| watch.lap(k, stage);
-    let solved = clouds(&problem, &mut lap)
-        .and_then(|clouds| meshes(&problem, clouds, &mut lap))
-        .and_then(|meshes| solved(&problem, meshes, &mut lap))
+    let mut out = out_dir(args.out.as_deref(), progress)?;
+    let mut observer = observer(&problem, &mut watch, progress);
+    let solved = clouds(&problem, &mut observer)
+        .and_then(|clouds| meshes(&problem, clouds, &mut observer))
+        .and_then(|meshes| solved(&problem, meshes, &mut observer))
         .map_err(|e| Failure::of(e, &problem.source))?;
-    if let Some(out) = &args.out {
-        let out = OutDir::create(out)?;
+    drop(observer);
+    if let Some(out) = &mut out {
         let fields = NodeFields::of(&solved);
-        out.write("nodes.csv", csv_of_solutions(&fields))?;
-        out.write("mesh.vtu", vtu_of_solutions(&fields))?;
-        out.write("mesh.msh", msh_of_solutions(&fields))?;
-        out.write("stars.json", stars_json(&fields).map_err(|error| Failure::Json(error.to_string()))?)?;
+        out.write_with("nodes.csv", |sink| csv_of_solutions(sink, &fields))?;
+        out.write_with("mesh.vtu", |sink| vtu_of_solutions(sink, &fields))?;
+        out.write_with("mesh.msh", |sink| msh_of_solutions(sink, &fields))?;
+        out.write_with("stars.json", |sink| stars_json(sink, &fields))?;
         let parts = solved.parts();
-        out.write_picture("nodes", &nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
-        out.write_picture("mesh", &mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
-        out.write_picture("solution", &solved_svg(&problem, &solved))?;
+        out.write_picture("nodes", || nodes_svg(&problem, parts.iter().map(|p| (&*p.name, p.mesh.cloud()))))?;
+        out.write_picture("mesh", || mesh_svg(&problem, parts.iter().map(|p| (&*p.name, &p.mesh))))?;
+        out.write_picture("solution", || solved_svg(&problem, &solved))?;
         if let Solved::Torsion(parts) = &solved {
             out.write("edges.csv", csv_of_edges(parts))?;
-            out.write_picture("edges", &edges_svg(&problem, parts))?;
+            out.write_picture("edges", || edges_svg(&problem, parts))?;
         }
     }
-    finish(Report::of_solved(&problem, &solved, &args.at), &watch, args.problem.json, args.out.as_deref())
+    finish(Report::of_solved(&problem, &solved, &args.at), (&watch, progress), args.problem.json, out)
 }

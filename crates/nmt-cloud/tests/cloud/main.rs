@@ -3,6 +3,7 @@
 mod clearance;
 mod edges;
 mod errors;
+mod graded;
 mod numbering;
 mod random_regions;
 mod randomising;

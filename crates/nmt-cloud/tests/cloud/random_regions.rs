@@ -112,6 +112,7 @@ proptest! {
         let [edge_clearance, node_clearance] = clearances;
         let hole_nodes = vec![];
         let params = CloudParams {
+            grading: None,
             nodes, irregularity, seed, clearance, division, edge_clearance, node_clearance, hole_nodes,
             edge_nodes: Vec::new(),
         };

@@ -65,7 +65,7 @@ fn newton(mesh: &Mesh, field: &NodalPolynomials, node: NodeId) -> Extreme {
     }
     let [g_x, g_y] = here.gradient;
     let step = [-(yy * g_x - xy * g_y) / determinant, -(xx * g_y - xy * g_x) / determinant];
-    if step[0].hypot(step[1]) > mesh.cloud().max_spacing() {
+    if step[0].hypot(step[1]) > mesh.cloud().local_spacing(node) {
         return unmoved;
     }
     let top = [at[0] + step[0], at[1] + step[1]];

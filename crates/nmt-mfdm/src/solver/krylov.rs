@@ -24,22 +24,25 @@ pub(crate) struct Iterated {
     pub residual: f64,
 }
 
-/// Counts iterations and tells when to stop: at the cap, or where the residual has not halved for long.
-struct Watch {
+/// Counts iterations, tells them with their residuals, and says when to stop: at the cap, or where the residual has not
+/// halved for long.
+struct Watch<'a> {
+    told: &'a mut dyn FnMut(usize, f64),
     iterations: usize,
     cap: usize,
     best: f64,
     since: usize,
 }
 
-impl Watch {
-    fn new(limits: Limits) -> Self {
-        Self { iterations: 0, cap: limits.iterations, best: f64::INFINITY, since: 0 }
+impl<'a> Watch<'a> {
+    fn new(limits: Limits, told: &'a mut dyn FnMut(usize, f64)) -> Self {
+        Self { told, iterations: 0, cap: limits.iterations, best: f64::INFINITY, since: 0 }
     }
 
     /// One more iteration, with the residual it left; false where there is no use in another.
     fn goes_on(&mut self, residual: f64) -> bool {
         self.iterations += 1;
+        (self.told)(self.iterations, residual);
         if residual < 0.5 * self.best {
             (self.best, self.since) = (residual, self.iterations);
         }
@@ -54,6 +57,7 @@ pub(crate) fn cg(
     x: &mut [f64],
     limits: Limits,
     mut precondition: impl FnMut(&[f64], &mut [f64]),
+    told: &mut dyn FnMut(usize, f64),
 ) -> Iterated {
     let n = b.len();
     let right = norm(b);
@@ -62,7 +66,7 @@ pub(crate) fn cg(
         return Iterated { iterations: 0, residual: 0.0 };
     }
     let (mut r, mut z, mut p, mut q) = (b.to_vec(), vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut watch = Watch::new(limits);
+    let mut watch = Watch::new(limits, told);
     let mut starts = 0;
     loop {
         // (Re)start from the true residual.
@@ -108,6 +112,7 @@ pub(crate) fn bicgstab(
     x: &mut [f64],
     limits: Limits,
     mut precondition: impl FnMut(&[f64], &mut [f64]),
+    told: &mut dyn FnMut(usize, f64),
 ) -> Iterated {
     let n = b.len();
     let right = norm(b);
@@ -118,7 +123,7 @@ pub(crate) fn bicgstab(
     let mut r = b.to_vec();
     let (mut shadow, mut p) = (r.clone(), vec![0.0; n]);
     let (mut v, mut t, mut y) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut watch = Watch::new(limits);
+    let mut watch = Watch::new(limits, told);
     let mut starts = 0;
     loop {
         starts += 1;
@@ -190,8 +195,11 @@ mod tests {
         let (symmetric, other) = (tridiagonal(50, -1.0, -1.0), tridiagonal(50, -1.4, -0.8));
         for (a, is_symmetric) in [(&symmetric, true), (&symmetric, false), (&other, false)] {
             let (b, mut x) = (a.apply(&exact), vec![7.0; 50]);
-            let done =
-                if is_symmetric { cg(a, &b, &mut x, LIMITS, jacobi) } else { bicgstab(a, &b, &mut x, LIMITS, jacobi) };
+            let done = if is_symmetric {
+                cg(a, &b, &mut x, LIMITS, jacobi, &mut |_, _| {})
+            } else {
+                bicgstab(a, &b, &mut x, LIMITS, jacobi, &mut |_, _| {})
+            };
             assert!(done.residual <= 1e-12 && done.iterations < 60, "{done:?}");
             assert!(x.iter().zip(&exact).all(|(x, e)| (x - e).abs() < 1e-10));
         }
@@ -209,7 +217,11 @@ mod tests {
         let copy = |r: &[f64], z: &mut [f64]| z.copy_from_slice(r);
         for is_cg in [true, false] {
             let mut x = vec![0.0; 20];
-            let done = if is_cg { cg(&a, &b, &mut x, LIMITS, copy) } else { bicgstab(&a, &b, &mut x, LIMITS, copy) };
+            let done = if is_cg {
+                cg(&a, &b, &mut x, LIMITS, copy, &mut |_, _| {})
+            } else {
+                bicgstab(&a, &b, &mut x, LIMITS, copy, &mut |_, _| {})
+            };
             assert!(done.residual > 0.1 && done.iterations <= 100, "{done:?}");
             let left: f64 = a.apply(&x).iter().zip(&b).map(|(ax, b)| (b - ax) * (b - ax)).sum::<f64>();
             assert!((done.residual - (left / 20.0).sqrt()).abs() < 1e-12);
@@ -221,7 +233,7 @@ mod tests {
         let mut rows = vec![vec![0.0; 3]; 3];
         (0..3).for_each(|i| rows[i][i] = if i == 1 { f64::NAN } else { 1.0 });
         let mut x = vec![0.0; 3];
-        let done = bicgstab(&of_dense(&rows), &[1.0; 3], &mut x, LIMITS, |r, z| z.copy_from_slice(r));
+        let done = bicgstab(&of_dense(&rows), &[1.0; 3], &mut x, LIMITS, |r, z| z.copy_from_slice(r), &mut |_, _| {});
         assert!(done.residual.is_nan() && done.iterations < 5, "{done:?}");
     }
 }

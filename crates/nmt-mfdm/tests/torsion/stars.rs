@@ -248,3 +248,27 @@ fn one_star_opened_up_is_the_one_that_the_equations_use() {
         assert!(hidden > 0);
     }
 }
+
+#[test]
+fn a_star_that_was_mended_is_opened_up_as_the_solution_has_it() {
+    let mesh = mesh(&holed_l(1.0, [0.0, 0.0]), &params([61, 41], 0.45, 3));
+    let params = SolveParams::default();
+    let problem = TorsionProblem::default();
+    let solution = solve(&problem, &mesh, &params).expect("a sound problem");
+    let chosen = |node: usize| {
+        let star = NodeStar::of(mesh.cloud(), &params, NodeId::of(node)).expect("sound parameters");
+        star.expect("meshless formulations have stars").members.len()
+    };
+    let all_used = solution.used_stars.diagnostics(&mesh);
+    let is_mended = |node: &usize| all_used[*node].size as usize > chosen(*node);
+    let mended: Vec<usize> = (0..mesh.cloud().n_nodes()).filter(is_mended).collect();
+    assert!(mended.len() > 3, "{mended:?}");
+    for node in [mended[0], mended[mended.len() - 1], 0] {
+        let star = NodeStar::in_torsion(&problem, &mesh, &params, NodeId::of(node)).expect("sound parameters");
+        let star = star.expect("meshless formulations have stars");
+        let used = &all_used[node];
+        let found = (star.members.len(), star.outcome.order, star.radius, star.outcome.condition);
+        assert_eq!(found, (used.size as usize, used.order as usize, used.radius, used.condition), "{node}");
+        assert_eq!((star.asked, star.outcome.enlarged), (9, used.size > 9));
+    }
+}

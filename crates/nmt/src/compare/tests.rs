@@ -15,7 +15,7 @@ fn unit_square(extra: &str) -> (Problem, Vec<MeshPart>) {
 fn comparison(extra: &str, exact_j: Option<f64>) -> Comparison {
     let (problem, parts) = unit_square(extra);
     let mut ticks = 0.0;
-    let mut clock = || {
+    let mut clock = |_: &Method| {
         ticks += 0.5;
         ticks
     };
@@ -69,8 +69,53 @@ fn a_method_that_fails_says_why_and_the_others_go_on() {
     let (problem, mut rows) = (unit_square("").0, comparison("", None).rows);
     rows[3].outcome = Outcome::Failed { error: "too few nodes".into() };
     let comparison = Comparison { rows, ..Comparison::new(&problem, None) };
-    assert!(!comparison.is_failure());
+    assert_eq!(comparison.n_failures(), 1);
     assert!(text(&comparison).contains("failed: too few nodes"));
     assert!(comparison.json().expect("JSON").contains("\"error\": \"too few nodes\""));
     assert!(unknowns_svg(&comparison).starts_with("<?xml"));
+}
+
+#[test]
+fn a_poisson_problem_is_held_against_its_exact_solution() {
+    let solve =
+        "irregularity = 0.25\n[solve]\nsource = \"-2*pi^2*sin(pi*x)*sin(pi*y)\"\nexact = \"sin(pi*x)*sin(pi*y)\"";
+    let comparison = comparison(solve, None);
+    assert_eq!((comparison.reference.as_str(), comparison.rows.len()), ("exact", 10));
+    let errors = |method: &str| {
+        let row = comparison.rows.iter().find(|row| row.method == method).and_then(Row::poisson).expect("numbers");
+        assert_eq!((row.unknowns, row.integral_difference, row.max_difference), (169, None, None));
+        [row.l2_error.expect("an error"), row.max_error.expect("an error")]
+    };
+    let [fem, best] = ["fem", "variational 4 blended+hat"].map(errors);
+    assert!(fem.iter().all(|error| (1e-3..0.1).contains(error)), "{fem:?}"); // h² = 5e-3
+    assert!(best.iter().all(|error| *error < 1e-2 * fem[0]), "{best:?}"); // 4e-3 measured
+    let table = text(&comparison);
+    assert!(table.contains("max error") && table.contains("held against the exact u = sin(pi*x)*sin(pi*y)"), "{table}");
+    assert!(unknowns_svg(&comparison).contains("relative error of u in L²"));
+}
+
+#[test]
+fn without_an_exact_solution_it_is_held_against_the_best() {
+    let with_best = |source: &str| comparison(&format!("[solve]\nsource = \"{source}\""), None);
+    let comparison = with_best("1");
+    let of = |comparison: &Comparison, method: &str| {
+        let row = comparison.rows.iter().find(|row| row.method == method).and_then(Row::poisson);
+        *row.expect("numbers")
+    };
+    // ∇²u = 1 with u = 0 around is −F/2 of torsion, and J = 2∫F.
+    let best = of(&comparison, "variational 4 blended+hat");
+    assert!((best.integral / (-0.25 * EXACT) - 1.0).abs() < 1e-4); // 15 nodes a side
+    assert_eq!((best.integral_difference, best.max_difference, best.l2_error), (Some(0.0), Some(0.0), None));
+    let fem = of(&comparison, "fem");
+    assert!(fem.integral_difference.is_some_and(|d| (1e-3..0.1).contains(&d.abs())), "{fem:?}");
+    assert!(fem.max_difference.is_some_and(|d| (1e-4..0.1).contains(&d)), "{fem:?}");
+    assert!(text(&comparison).contains("held against the best, variational 4 blended+hat"));
+    // Where ∫u = 0 there is nothing to divide by.
+    assert_eq!(of(&with_best("sin(2*pi*x)"), "fem").integral_difference, None);
+}
+
+#[test]
+fn a_formula_that_is_not_finite_is_a_fault_of_the_problem() {
+    let (problem, parts) = unit_square("[solve]\nsource = \"1/(x - x)\"");
+    assert!(matches!(compare(&problem, &parts, None, &mut |_| 0.0), Err(NmtError::Problem(_))));
 }

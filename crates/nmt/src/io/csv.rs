@@ -1,31 +1,44 @@
 //! nodes.csv: one row a node.
 
 use crate::io::fields::NodeFields;
+use crate::io::text::Text;
 use nmt_cloud::Cloud;
 use nmt_geom::NodeId;
 use std::fmt::Write as _;
+use std::io::{self, Write};
 
 /// `subdomain,node,x,y,kind,edges`, node from 0 in each subdomain, edges joined by `;`, 17 significant digits.
-pub fn csv_of_clouds<'a>(parts: impl IntoIterator<Item = (&'a str, &'a [String], &'a Cloud)>) -> String {
-    let mut out = String::from("subdomain,node,x,y,kind,edges\n");
+///
+/// # Errors
+/// Those of `sink`.
+pub fn csv_of_clouds<'a>(
+    sink: &mut dyn Write,
+    parts: impl IntoIterator<Item = (&'a str, &'a [String], &'a Cloud)>,
+) -> io::Result<()> {
+    let mut out = Text::to(sink);
+    out.push("subdomain,node,x,y,kind,edges\n");
     for (name, edge_names, cloud) in parts {
         let rows = Rows::new(name, edge_names, cloud);
         for node in 0..cloud.n_nodes() {
             rows.write(&mut out, NodeId::of(node));
-            out.push('\n');
+            out.push("\n");
         }
     }
-    out
+    out.finish()
 }
 
 /// The same with the fields at nodes: `F,tau_zx,tau_zy,tau` of torsion.
-pub fn csv_of_solutions(parts: &[NodeFields]) -> String {
-    let mut out = String::from("subdomain,node,x,y,kind,edges");
+///
+/// # Errors
+/// Those of `sink`.
+pub fn csv_of_solutions(sink: &mut dyn Write, parts: &[NodeFields]) -> io::Result<()> {
+    let mut out = Text::to(sink);
+    out.push("subdomain,node,x,y,kind,edges");
     for (name, _) in parts.first().map_or(&[][..], |fields| &fields.at_nodes) {
-        // Writing to a string cannot fail.
+        // Writing to a text cannot fail; its end tells.
         let _ = write!(out, ",{name}");
     }
-    out.push('\n');
+    out.push("\n");
     for NodeFields { part, at_nodes, .. } in parts {
         let cloud = part.mesh.cloud();
         let rows = Rows::new(&part.name, &part.edge_names, cloud);
@@ -34,10 +47,10 @@ pub fn csv_of_solutions(parts: &[NodeFields]) -> String {
             for (_, values) in at_nodes {
                 let _ = write!(out, ",{:.16e}", values[node.index()]);
             }
-            out.push('\n');
+            out.push("\n");
         }
     }
-    out
+    out.finish()
 }
 
 struct Rows<'a> {
@@ -51,17 +64,21 @@ impl<'a> Rows<'a> {
         Self { name: quoted(name), edge_names: edge_names.to_vec(), cloud }
     }
 
-    fn write(&self, out: &mut String, node: NodeId) {
+    fn write(&self, out: &mut Text, node: NodeId) {
         let [x, y] = self.cloud.xy()[node.index()];
         let edges = match self.cloud.edges(node) {
-            Some(edges) if edges.first == edges.second => self.edge_names[edges.first.index()].clone(),
+            Some(edges) if edges.first == edges.second => quoted(&self.edge_names[edges.first.index()]),
             Some(edges) => {
-                format!("{};{}", self.edge_names[edges.first.index()], self.edge_names[edges.second.index()])
+                quoted(&format!("{};{}", self.edge_names[edges.first.index()], self.edge_names[edges.second.index()]))
             }
             None => String::new(),
         };
         let kind = self.cloud.kind(node).name();
-        let _ = write!(out, "{},{},{x:.16e},{y:.16e},{kind},{}", self.name, node.0, quoted(&edges));
+        out.push(&self.name);
+        out.push(",");
+        out.integer(node.0);
+        let _ = write!(out, ",{x:.16e},{y:.16e},{kind},");
+        out.push(&edges);
     }
 }
 

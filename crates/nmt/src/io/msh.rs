@@ -4,10 +4,12 @@ mod model;
 mod names;
 
 use crate::io::fields::NodeFields;
+use crate::io::text::Text;
 use crate::pipeline::MeshPart;
 use model::{Entity, Model};
 use nmt_geom::{Bbox, NodeId, Point};
 use std::fmt::Write as _;
+use std::io::{self, Write};
 
 /// Gmsh's number for a line of two nodes.
 const LINE: u8 = 1;
@@ -19,31 +21,38 @@ const TRIANGLE: u8 = 2;
 /// Where all common edges conform the subdomains share their nodes; otherwise each subdomain keeps its own. Nodes and
 /// triangles are numbered as in nodes.csv and mesh.vtu, from 1, but for nodes of a welded mesh that an earlier subdomain
 /// has already.
-pub fn msh_of_meshes(parts: &[MeshPart]) -> String {
+///
+/// # Errors
+/// Those of `sink`.
+pub fn msh_of_meshes(sink: &mut dyn Write, parts: &[MeshPart]) -> io::Result<()> {
     let parts: Vec<&MeshPart> = parts.iter().collect();
-    Msh::of(&Model::new(&parts), &parts).out
+    Msh::of(sink, &Model::new(&parts), &parts).out.finish()
 }
 
 /// The meshes with the fields of the solution (`F, tau_zx, tau_zy, tau` of torsion) at nodes as views; where subdomains share
 /// nodes, at the nodes of triangles, since each subdomain has values of its own there.
-pub fn msh_of_solutions(solved: &[NodeFields]) -> String {
+///
+/// # Errors
+/// Those of `sink`.
+pub fn msh_of_solutions(sink: &mut dyn Write, solved: &[NodeFields]) -> io::Result<()> {
     let parts: Vec<&MeshPart> = solved.iter().map(|fields| fields.part).collect();
     let model = Model::new(&parts);
-    let mut msh = Msh::of(&model, &parts);
+    let mut msh = Msh::of(sink, &model, &parts);
     for (field, (name, _)) in solved.first().map_or(&[][..], |fields| &fields.at_nodes).iter().enumerate() {
         msh.view(name, &model, &parts, |k, node| solved[k].at_nodes[field].1[node.index()]);
     }
-    msh.out
+    msh.out.finish()
 }
 
-// Numbers are written in the shortest form that reads back to the same bits; writing to a string cannot fail.
-struct Msh {
-    out: String,
+// Numbers are written in the shortest form that reads back to the same bits; writing to a text cannot fail.
+struct Msh<'w> {
+    out: Text<'w>,
 }
 
-impl Msh {
-    fn of(model: &Model, parts: &[&MeshPart]) -> Self {
-        let mut msh = Self { out: "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".into() };
+impl<'w> Msh<'w> {
+    fn of(sink: &'w mut dyn Write, model: &Model, parts: &[&MeshPart]) -> Self {
+        let mut msh = Self { out: Text::to(sink) };
+        msh.out.push("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
         msh.physical_names(model);
         msh.entities(model);
         msh.nodes(model);
@@ -51,7 +60,7 @@ impl Msh {
         msh
     }
 
-    fn section(&mut self, name: &str, write: impl FnOnce(&mut String)) {
+    fn section(&mut self, name: &str, write: impl FnOnce(&mut Text)) {
         let _ = writeln!(self.out, "${name}");
         write(&mut self.out);
         let _ = writeln!(self.out, "$End{name}");
@@ -68,10 +77,10 @@ impl Msh {
 
     fn entities(&mut self, model: &Model) {
         let envelope = |nodes: &[NodeId]| Bbox::of(nodes.iter().map(|node| model.xy[node.index()]));
-        let write_box = |out: &mut String, tag: usize, Bbox { min: [x0, y0], max: [x1, y1] }: Bbox| {
+        let write_box = |out: &mut Text, tag: usize, Bbox { min: [x0, y0], max: [x1, y1] }: Bbox| {
             let _ = write!(out, "{tag} {x0} {y0} 0 {x1} {y1} 0");
         };
-        let write_list = |out: &mut String, tags: &[String]| {
+        let write_list = |out: &mut Text, tags: &[String]| {
             let _ = write!(out, " {}", tags.len());
             for tag in tags {
                 let _ = write!(out, " {tag}");
@@ -92,7 +101,7 @@ impl Msh {
                 // The end has the sign that says that the curve leads there.
                 let ends = ends.map(|(&from, &to)| [point(from).to_string(), format!("-{}", point(to))]);
                 write_list(out, ends.as_ref().map_or(&[][..], |ends| ends));
-                out.push('\n');
+                out.push("\n");
             }
             for (k, surface) in model.surfaces.iter().enumerate() {
                 write_box(out, k + 1, surface.envelope);
@@ -100,7 +109,7 @@ impl Msh {
                 let sign = |is_reversed: bool| if is_reversed { "-" } else { "" };
                 let bounds = surface.bounds.iter().map(|b| format!("{}{}", sign(b.is_reversed), b.curve + 1));
                 write_list(out, &bounds.collect::<Vec<_>>());
-                out.push('\n');
+                out.push("\n");
             }
         });
     }
@@ -118,11 +127,14 @@ impl Msh {
                 };
                 let _ = writeln!(out, "{dimension} {tag} 0 {}", block.len());
                 for (_, node) in block {
-                    let _ = writeln!(out, "{}", node.index() + 1);
+                    integers(out, [node.index() + 1]);
                 }
                 for (_, node) in block {
                     let [x, y] = model.xy[node.index()];
-                    let _ = writeln!(out, "{x} {y} 0");
+                    out.number(x);
+                    out.push(" ");
+                    out.number(y);
+                    out.push(" 0\n");
                 }
             }
         });
@@ -149,7 +161,7 @@ impl Msh {
                 for nodes in model.triangles(k, part) {
                     tag += 1;
                     let [a, b, c] = nodes.map(|node| node.index() + 1);
-                    let _ = writeln!(out, "{tag} {a} {b} {c}");
+                    integers(out, [tag, a, b, c]);
                 }
             }
         });
@@ -157,7 +169,7 @@ impl Msh {
 
     /// A scalar by subdomain and node of that.
     fn view(&mut self, name: &str, model: &Model, parts: &[&MeshPart], value: impl Fn(usize, NodeId) -> f64) {
-        let head = |out: &mut String, n_rows: usize| {
+        let head = |out: &mut Text, n_rows: usize| {
             // One string, the name; one real, the time 0; three integers: step 0, one component, how many rows.
             let _ = writeln!(out, "1\n\"{name}\"\n1\n0\n3\n0\n1\n{n_rows}");
         };
@@ -167,8 +179,13 @@ impl Msh {
                 let triangles =
                     parts.iter().enumerate().flat_map(|(k, p)| p.mesh.tri_nodes().iter().map(move |t| (k, t)));
                 for (tag, (k, nodes)) in triangles.enumerate() {
-                    let [a, b, c] = nodes.map(|node| value(k, node));
-                    let _ = writeln!(out, "{} 3 {a} {b} {c}", tag + 1);
+                    out.integer(tag + 1);
+                    out.push(" 3");
+                    for node in nodes {
+                        out.push(" ");
+                        out.number(value(k, *node));
+                    }
+                    out.push("\n");
                 }
             });
         } else {
@@ -180,11 +197,23 @@ impl Msh {
                 head(out, values.len());
                 // In the order of $Nodes, which readers that skip the numbers count on.
                 for (_, node) in &model.owners {
-                    let _ = writeln!(out, "{} {}", node.index() + 1, values[node.index()]);
+                    out.integer(node.index() + 1);
+                    out.push(" ");
+                    out.number(values[node.index()]);
+                    out.push("\n");
                 }
             });
         }
     }
+}
+
+/// A line of whole numbers.
+fn integers<const N: usize>(out: &mut Text, numbers: [usize; N]) {
+    for (k, number) in numbers.into_iter().enumerate() {
+        out.push(if k > 0 { " " } else { "" });
+        out.integer(number);
+    }
+    out.push("\n");
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::io::fields::NodeFields;
 use nmt_mfdm::StarDiagnostics;
 use serde::Serialize;
+use std::io::{self, Write};
 
 /// The stars of one subdomain, each array of shape (n_nodes,); all 0 where a node has none: finite elements, and boundary
 /// nodes in the local formulation.
@@ -52,12 +53,13 @@ impl StarArrays {
 /// subdomain in the order of the file, on one line that ends with a line break.
 ///
 /// # Errors
-/// Where JSON cannot hold a value, which it can every star's.
-pub fn stars_json(parts: &[NodeFields]) -> Result<String, serde_json::Error> {
+/// Those of `sink`; where JSON cannot hold a value, which it can every star's.
+pub fn stars_json(sink: &mut dyn Write, parts: &[NodeFields]) -> io::Result<()> {
     #[derive(Serialize)]
     struct Stars {
         subdomains: Vec<StarArrays>,
     }
     let stars = Stars { subdomains: parts.iter().map(StarArrays::of).collect() };
-    serde_json::to_string(&stars).map(|text| text + "\n")
+    serde_json::to_writer(&mut *sink, &stars)?;
+    sink.write_all(b"\n")
 }

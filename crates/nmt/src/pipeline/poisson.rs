@@ -1,6 +1,6 @@
 //! The last stage of a Poisson problem: ∇²u = f in every subdomain, each alone.
 
-use super::{MeshPart, Observer, elimination_fault};
+use super::{MeshPart, Observer, elimination_fault, of_solution};
 use crate::error::NmtError;
 use crate::problem::{Formula, Place, PoissonSettings, Problem, ProblemError, Subdomain};
 use nmt_geom::{NodeId, Point};
@@ -74,7 +74,7 @@ pub fn poisson_solutions(
     }
     let solve = |(k, part): (usize, MeshPart)| {
         let subdomain = &problem.subdomains[k];
-        solve_part(problem, subdomain, settings, part, &mut |stage| observer(k, stage.into()))
+        solve_part(problem, subdomain, settings, part, &mut of_solution(k, observer))
     };
     meshes.into_iter().enumerate().map(solve).collect()
 }
@@ -84,32 +84,55 @@ fn solve_part(
     subdomain: &Subdomain,
     settings: &PoissonSettings,
     part: MeshPart,
-    ended: &mut dyn FnMut(nmt_mfdm::Stage),
+    observer: &mut dyn FnMut(nmt_mfdm::Event),
 ) -> Result<PoissonPart, NmtError> {
     let params = problem.solve.params(subdomain.formulation);
-    let source = |p: Point| settings.source.at(p);
-    let boundary = |p: Point| settings.boundary.as_ref().map_or(0.0, |formula| formula.at(p));
-    let fluxes: Vec<_> = subdomain.fluxes.iter().map(|flux| flux.as_ref().map(|q| move |p: Point| q.at(p))).collect();
-    let as_function = |flux| flux as &(dyn Fn(Point) -> f64 + Sync);
-    let poisson = PoissonProblem {
-        source: &source,
-        boundary: &boundary,
-        fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
-        section: &part.section,
-    };
-    let solution = solve_poisson_observed(&poisson, &part.mesh, &params, ended).map_err(|error| {
+    let (solution, errors) = solve_on(problem, subdomain, settings, (&part, &params), observer)?;
+    let data = PoissonData { settings: settings.clone(), fluxes: subdomain.fluxes.clone() };
+    Ok(PoissonPart { part, params, solution, data, errors })
+}
+
+/// The solution on one mesh, and its errors where the exact solution is given.
+pub(crate) fn solve_on(
+    problem: &Problem,
+    subdomain: &Subdomain,
+    settings: &PoissonSettings,
+    (part, params): (&MeshPart, &SolveParams),
+    observer: &mut dyn FnMut(nmt_mfdm::Event),
+) -> Result<(PoissonSolution, Option<PoissonErrors>), NmtError> {
+    let solved =
+        poisson_on(subdomain, settings, part, |poisson| solve_poisson_observed(poisson, &part.mesh, params, observer));
+    let solution = solved.map_err(|error| {
         let fault = datum_fault(problem, subdomain, settings, &error);
         fault.map_or(NmtError::Solve { subdomain: part.name.clone(), source: error }, |f| NmtError::Problem(vec![f]))
     })?;
     let errors = match &settings.exact {
         Some(exact) => {
-            let errors = errors(exact, &solution, &part);
+            let errors = errors(exact, &solution, part);
             Some(errors.map_err(|fault| NmtError::Problem(vec![exact_fault(problem, &part.name, exact, fault)]))?)
         }
         None => None,
     };
-    let data = PoissonData { settings: settings.clone(), fluxes: subdomain.fluxes.clone() };
-    Ok(PoissonPart { part, params, solution, data, errors })
+    Ok((solution, errors))
+}
+
+/// What `work` makes of the Poisson problem of a subdomain.
+pub(crate) fn poisson_on<T>(
+    subdomain: &Subdomain,
+    settings: &PoissonSettings,
+    part: &MeshPart,
+    work: impl FnOnce(&PoissonProblem) -> T,
+) -> T {
+    let source = |p: Point| settings.source.at(p);
+    let boundary = |p: Point| settings.boundary.as_ref().map_or(0.0, |formula| formula.at(p));
+    let fluxes: Vec<_> = subdomain.fluxes.iter().map(|flux| flux.as_ref().map(|q| move |p: Point| q.at(p))).collect();
+    let as_function = |flux| flux as &(dyn Fn(Point) -> f64 + Sync);
+    work(&PoissonProblem {
+        source: &source,
+        boundary: &boundary,
+        fluxes: fluxes.iter().map(|flux| flux.as_ref().map(as_function)).collect(),
+        section: &part.section,
+    })
 }
 
 /// A datum that is not finite, in the terms of the file.

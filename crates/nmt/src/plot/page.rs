@@ -316,7 +316,8 @@ mod tests {
     #[test]
     fn without_loops_the_rim_of_the_mesh_is_the_outline() {
         let xy = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
-        let part = Part { name: "", xy: &xy, marks: &[], loops: &[], triangles: &[[0, 1, 2], [0, 2, 3]] };
+        let part =
+            Part { name: "", xy: &xy, marks: &[], spacings: &[], loops: &[], triangles: &[[0, 1, 2], [0, 2, 3]] };
         assert_eq!(enclosed_area(&outlines(&part, &xy)), 100.0);
     }
 }

@@ -60,8 +60,8 @@ impl Scale {
     /// `noise`, rounding of a larger field that this one is a part of.
     pub fn new(values: impl Iterator<Item = f64>, map: Map, noise: f64) -> Option<Self> {
         let mut values: Vec<f64> = values.filter(|&v| is_drawable(v)).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        let (&min, &max) = (values.first()?, values.last()?);
+        let (&first, least, most) = (values.first()?, f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
+        let [min, max] = [least, most].map(|end| values.iter().copied().fold(first, end));
         let magnitude = min.abs().max(max.abs());
         if magnitude <= noise || max - min <= CONSTANT_REL * magnitude || max - min < f64::MIN_POSITIVE / CONSTANT_REL {
             let constant = Some(if magnitude <= noise { 0.0 } else { 0.5 * min + 0.5 * max });
@@ -69,11 +69,10 @@ impl Scale {
             return Some(Self { map, step, first: 0, last: 1, below: None, above: None, constant });
         }
         let (low, high) = match map {
-            Map::Sequential => (min, without_peaks(&values, min)),
+            Map::Sequential => (min, without_peaks(&mut values, min, max)),
             Map::Diverging => {
-                let mut magnitudes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-                magnitudes.sort_unstable_by(f64::total_cmp);
-                let high = without_peaks(&magnitudes, 0.0);
+                values.iter_mut().for_each(|v| *v = v.abs());
+                let high = without_peaks(&mut values, 0.0, magnitude);
                 (-high, high)
             }
         };
@@ -107,6 +106,18 @@ impl Scale {
         let colour = |k: i64| self.map.at((k - start) as f64 / (end - start).max(1) as f64);
         let from = |k: i64| if k == lowest { f64::NEG_INFINITY } else { self.step.times(k).value() };
         (lowest..=highest).map(|k| Band { from: from(k), colour: colour(k) }).collect()
+    }
+
+    /// The bands, with one more for what is zero: neither of the colours beside it. Values other than 0 are at least `noise`
+    /// in size.
+    pub fn bands_about_zero(&self, noise: f64) -> Vec<Band> {
+        let mut bands = self.bands();
+        let positive = bands.iter().position(|band| band.from == 0.0);
+        if let (Map::Diverging, Some(k)) = (self.map, positive.filter(|_| noise > 0.0)) {
+            bands[k].from = noise;
+            bands.insert(k, Band { from: 0.0, colour: self.map.at(0.5) });
+        }
+        bands
     }
 
     /// Values at which ticks stand on a bar of this height, and their labels in units of `10^unit`.
@@ -221,11 +232,11 @@ impl Scale {
     }
 }
 
-/// The largest of ascending values, or the quantile that stands for it where it lies too far above `low` and the others.
-fn without_peaks(ascending: &[f64], low: f64) -> f64 {
-    let Some(&max) = ascending.last() else { return low };
-    let rank = (CAP_QUANTILE * ascending.len() as f64).ceil() as usize;
-    let quantile = ascending[rank.clamp(1, ascending.len()) - 1];
+/// `max`, the largest of at least one value, or the quantile that stands for it where it lies too far above `low` and the
+/// others. The values are put in another order.
+fn without_peaks(values: &mut [f64], low: f64, max: f64) -> f64 {
+    let rank = (CAP_QUANTILE * values.len() as f64).ceil() as usize;
+    let (_, &mut quantile, _) = values.select_nth_unstable_by(rank.clamp(1, values.len()) - 1, f64::total_cmp);
     let has_peaks = max - low > CAP_FACTOR * (quantile - low) && quantile > low;
     if has_peaks { quantile } else { max }
 }

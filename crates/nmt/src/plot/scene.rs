@@ -94,6 +94,8 @@ pub(super) enum Shape {
     Marks { centres: Vec<Point>, form: MarkForm, size: f64, colour: Rgb },
     /// A line of text.
     Text(Text),
+    /// Shapes, seen within closed lines only (even-odd); `id` is their number among such shapes.
+    Clipped { id: usize, within: Vec<Polyline>, shapes: Vec<Shape> },
     /// Shapes under one name, for those who edit the picture.
     Group { id: &'static str, shapes: Vec<Shape> },
 }

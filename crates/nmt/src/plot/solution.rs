@@ -128,10 +128,14 @@ pub(super) fn scene(
     let head = HEAD.max(top);
     let [frame_width, frame_height] = axes.view.size;
 
-    let noise: [f64; 4] = std::array::from_fn(|k| NOISE_REL * size(&panels[k]));
     let values = |k: usize| {
         parts.iter().flat_map(move |(part, fields)| fields[k][..fields[k].len().min(part.xy.len())].iter().copied())
     };
+    let noise: [f64; 4] = std::array::from_fn(|k| {
+        let own = if panels[k].is_signed() { largest(values(k)) } else { 0.0 };
+        NOISE_REL * size(&panels[k]).max(own)
+    });
+    let topologies: Vec<Option<Topology>> = parts.iter().map(|(part, fields)| common_topology(part, fields)).collect();
     let scales: [Option<Scale>; 4] = std::array::from_fn(|k| Scale::new(values(k), panels[k].map, noise[k]));
     let bars = scales.iter().flatten().map(|scale| scale.bar_width(frame_height)).fold(0.0, f64::max);
     let cell = [left + frame_width + right.max(BAR_GAP + bars), head + frame_height + bottom];
@@ -145,7 +149,11 @@ pub(super) fn scene(
         let (column, row) = (number % arrangement.columns, number / arrangement.columns);
         let x = corner[0] + column as f64 * (cell[0] + CELL_GAP[0]) + left;
         let y = corner[1] + row as f64 * (cell[1] + CELL_GAP[1]) + head;
-        let fields: Vec<(&Part, &[f64])> = parts.iter().map(|(part, fields)| (part, fields[number])).collect();
+        let fields: Vec<Field> = parts
+            .iter()
+            .zip(&topologies)
+            .map(|((part, fields), topology)| Field { part, values: fields[number], topology: topology.as_ref() })
+            .collect();
         let title = panel.title(LETTERS[number], frame_width);
         let drawn = panel_shapes(scale.as_ref(), &fields, noise[number], &axes, [x, y], title);
         shapes.push(Shape::Group { id: panel.id, shapes: drawn });
@@ -154,9 +162,25 @@ pub(super) fn scene(
     Scene { width: page_width, height: height.ceil(), description: description(caption, "solution"), shapes }
 }
 
+/// One field on one part.
+struct Field<'a> {
+    part: &'a Part<'a>,
+    values: &'a [f64],
+    /// Where it is that of all fields.
+    topology: Option<&'a Topology>,
+}
+
+/// The triangulation of all four fields at once, where every node has a value of each.
+fn common_topology(part: &Part<'_>, fields: &[&[f64]; 4]) -> Option<Topology> {
+    let is_whole = |values: &&[f64]| values.get(..part.xy.len()).is_some_and(|v| v.iter().all(|&v| is_drawable(v)));
+    // Orientation and area do not depend on where on the page it stands, but for the direction of y.
+    let points = || page_points(part, &|p| [p[0], -p[1]]);
+    fields.iter().all(is_whole).then(|| Topology::new(&points(), part.triangles, |_| true))
+}
+
 fn panel_shapes(
     scale: Option<&Scale>,
-    parts: &[(&Part<'_>, &[f64])],
+    parts: &[Field<'_>],
     noise: f64,
     axes: &Axes,
     origin: Point,
@@ -165,13 +189,16 @@ fn panel_shapes(
     let [frame_width, frame_height] = axes.view.size;
     let mut shapes = Vec::new();
     let mut rims = Vec::new();
-    for (part, values) in parts {
+    for Field { part, values, topology } in parts {
         let points = page_points(part, &|p| axes.view.to_page(origin, p));
         rims.extend(outlines(part, &points));
         if let Some(scale) = scale {
             // Rounding about zero would draw its own islands: below the noise, zero is zero.
             let denoised: Vec<f64> = values.iter().map(|&v| if v.abs() < noise { 0.0 } else { v }).collect();
-            shapes.extend(filled_contours(part, &points, &denoised, scale));
+            let has_value = |node: usize| denoised.get(node).is_some_and(|&v| is_drawable(v));
+            let own = topology.is_none().then(|| Topology::new(&points, part.triangles, has_value));
+            let surface = topology.or(own.as_ref()).map(|topology| Surface::new(&points, &denoised, topology));
+            shapes.extend(surface.iter().flat_map(|surface| filled_contours(part, surface, &denoised, scale, noise)));
         }
     }
     shapes.push(Shape::lines(rims, OUTLINE));
@@ -198,20 +225,17 @@ impl Panel {
 }
 
 /// Bands of colour from the lowest, each painted over the one below, and the lines between them.
-fn filled_contours(part: &Part<'_>, points: &[Point], values: &[f64], scale: &Scale) -> Vec<Shape> {
-    let has_value = |node: usize| values.get(node).is_some_and(|&v| is_drawable(v));
-    let topology = Topology::new(points, part.triangles, has_value);
-    let surface = Surface::new(points, values, &topology);
+fn filled_contours(part: &Part<'_>, surface: &Surface<'_>, values: &[f64], scale: &Scale, noise: f64) -> Vec<Shape> {
     let (mut shapes, mut contours) = (Vec::new(), Vec::new());
     // Where the field is zero over whole triangles, its level 0 is an area, and a line around that means nothing.
     let is_zero = |node: &u32| values.get(*node as usize) == Some(&0.0);
     let zero_is_an_area = part.triangles.iter().any(|triangle| triangle.iter().all(is_zero));
-    for band in scale.bands() {
+    for band in if zero_is_an_area { scale.bands_about_zero(noise) } else { scale.bands() } {
         let mut areas = Vec::new();
         for ring in surface.at_least(band.from) {
             let (area, lines) = thinned(&ring);
             areas.extend(area);
-            if !(zero_is_an_area && band.from == 0.0) {
+            if !(zero_is_an_area && band.from.abs() <= noise) {
                 contours.extend(lines);
             }
         }

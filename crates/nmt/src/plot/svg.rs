@@ -65,6 +65,16 @@ fn write_shape(out: &mut String, shape: &Shape) {
             }
         }
         Shape::Text(text) => write_text(out, text),
+        Shape::Clipped { id, within, shapes } => {
+            let data = path_data(within, Precision::Hundredth);
+            out.push_str(&format!("<clipPath id=\"clip{id}\"><path d=\"{data}\" clip-rule=\"evenodd\"/></clipPath>\n"));
+            // Squares side by side: smoothing of their sides would show as a net.
+            out.push_str(&format!("<g clip-path=\"url(#clip{id})\" shape-rendering=\"crispEdges\">\n"));
+            for shape in shapes {
+                write_shape(out, shape);
+            }
+            out.push_str("</g>\n");
+        }
         Shape::Group { id, shapes } => {
             out.push_str(&format!("<g id=\"{id}\">\n"));
             for shape in shapes {

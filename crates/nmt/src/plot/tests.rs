@@ -40,7 +40,14 @@ impl Section {
     }
 
     fn part(&self) -> Part<'_> {
-        Part { name: self.name, xy: &self.xy, marks: &self.marks, loops: &self.loops, triangles: &self.triangles }
+        Part {
+            name: self.name,
+            xy: &self.xy,
+            marks: &self.marks,
+            spacings: &[],
+            loops: &self.loops,
+            triangles: &self.triangles,
+        }
     }
 
     fn fields(&self) -> Fields<'_> {
@@ -64,7 +71,7 @@ fn figures(caption: &Caption<'_>, sections: &[Section]) -> [String; 3] {
 fn text_boxes(shapes: &[Shape], found: &mut Vec<([f64; 4], String)>) {
     for shape in shapes {
         match shape {
-            Shape::Group { shapes, .. } => text_boxes(shapes, found),
+            Shape::Clipped { shapes, .. } | Shape::Group { shapes, .. } => text_boxes(shapes, found),
             Shape::Text(text) => {
                 let width = text::width(&text.runs, text.size);
                 let before = match text.anchor {
@@ -233,6 +240,26 @@ fn a_hundred_thousand_nodes_make_small_files() {
     let [nodes, mesh, solution] = figures(&Caption { title: "", units: "" }, &[section]);
     let megabytes = |svg: &str| svg.len() as f64 / 1e6;
     assert!(megabytes(&nodes) < 2.5 && megabytes(&mesh) < 3.0 && megabytes(&solution) < 0.5);
+}
+
+#[test]
+fn crowded_pictures_stay_small_and_say_what_they_do_not_draw() {
+    let caption = Caption { title: "", units: "" };
+    let section = Section::rectangle("large", [0.0, 0.0], [1.0, 1.0], 600);
+    let [nodes, mesh] = [nodes_figure(&caption, &[section.part()]), mesh_figure(&caption, &[section.part()])];
+    assert!(nodes.len() < 3_000_000 && mesh.len() < 100_000, "{} {}", nodes.len(), mesh.len());
+    assert!(nodes.contains("358\u{2009}801 interior nodes") && nodes.contains("nodes drawn: one where many lie"));
+    assert!(mesh.contains("shaded where edges are too short") && mesh.contains("<clipPath id=\"clip0\">"));
+
+    // Two columns of the same number of nodes: the one is crowded, in the other all edges are drawn.
+    let mut xy = section.xy.clone();
+    xy.iter_mut().filter(|p| p[0] > 0.1).for_each(|p| p[0] = 0.1 + 100.0 * (p[0] - 0.1));
+    let graded = mesh_figure(&caption, &[Part { xy: &xy, ..section.part() }]);
+    assert!(graded.len() < 3_000_000, "{}", graded.len());
+    // Below the limit nothing of this is said.
+    let small = Section::rectangle("small", [0.0, 0.0], [1.0, 1.0], 100);
+    assert!(!nodes_figure(&caption, &[small.part()]).contains("drawn"));
+    assert!(!mesh_figure(&caption, &[small.part()]).contains("shaded"));
 }
 
 #[test]

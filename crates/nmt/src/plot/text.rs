@@ -40,12 +40,31 @@ pub(super) struct Run {
 
 impl Run {
     pub fn new(text: impl Into<String>, style: Style) -> Self {
-        Self { text: text.into(), style }
+        let text = text.into();
+        Self { text: if text.is_ascii() { text } else { drawable(&text) }, style }
     }
 
     pub fn upright(text: impl Into<String>) -> Self {
         Self::new(text, Style::Upright)
     }
+}
+
+/// What titles and names may well have and the font has not, in signs and words that it has: ∇² is the Laplacian Δ.
+const WRITTEN: [(&str, &str); 9] = [
+    ("∇²", "Δ"),
+    ("∇^2", "Δ"),
+    ("∇·", "div "),
+    ("∇⋅", "div "),
+    ("∇×", "curl "),
+    ("∇", "grad "),
+    ("∮", "∫"),
+    ("⋅", "·"),
+    ("∈", " in "),
+];
+
+/// The text with every sign of [`WRITTEN`] replaced.
+fn drawable(text: &str) -> String {
+    WRITTEN.iter().fold(text.to_owned(), |text, (sign, written)| text.replace(sign, written))
 }
 
 /// A line of upright text.
@@ -160,5 +179,12 @@ mod tests {
     fn scripts_are_narrower_than_their_line() {
         let whole = width(&[Run::upright("zx")], 10.0);
         assert!((width(&[Run::new("zx", Style::Subscript)], 10.0) - SCRIPT_SIZE * whole).abs() < 1e-12); // rounding
+    }
+
+    #[test]
+    fn signs_that_the_font_lacks_are_written_so_that_they_can_be_read() {
+        let written = |text: &str| Run::upright(text).text;
+        assert_eq!(written("∇²u = 1, |∇u|, ∇·σ, ∮τ ds"), "Δu = 1, |grad u|, div σ, ∫τ ds");
+        assert_eq!(written("τ_max, x² ≤ ∞"), "τ_max, x² ≤ ∞");
     }
 }

@@ -45,23 +45,16 @@ impl Topology {
             })
             .collect();
 
-        let mut sides: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * triangles.len());
-        for (number, t) in triangles.iter().enumerate() {
-            for k in 0..3 {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                sides.push((a.min(b), a.max(b), (3 * number + k) as u32));
-            }
-        }
-        sides.sort_unstable();
+        let sides = sides(&triangles, points.len());
         let mut topology =
             Self { triangle_edges: vec![[0; 3]; triangles.len()], triangles, edges: Vec::new(), rim: Vec::new() };
-        for same_edge in sides.chunk_by(|s, t| (s.0, s.1) == (t.0, t.1)) {
-            let (low, high, _) = same_edge[0];
+        for same_edge in sides.chunk_by(|s, t| (s.low, s.high) == (t.low, t.high)) {
+            let Side { low, high, .. } = same_edge[0];
             let edge = topology.edges.len() as u32;
             topology.edges.push([low, high]);
             let mut upwards = 0_i64; // how many more triangles go from low to high than back
-            for &(.., side) in same_edge {
-                let (number, k) = (side as usize / 3, side as usize % 3);
+            for side in same_edge {
+                let (number, k) = (side.number as usize / 3, side.number as usize % 3);
                 topology.triangle_edges[number][k] = edge;
                 upwards += if topology.triangles[number][k] == low { 1 } else { -1 };
             }
@@ -70,6 +63,38 @@ impl Topology {
         }
         topology
     }
+}
+
+/// A side of a triangle: side `k` of triangle `t` has the number 3·t + k.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    low: u32,
+    high: u32,
+    number: u32,
+}
+
+/// All sides in ascending order: those of each smaller node together by counting, and these few sorted.
+fn sides(triangles: &[[u32; 3]], n_points: usize) -> Vec<Side> {
+    let of_triangles = || {
+        triangles.iter().enumerate().flat_map(|(t, nodes)| {
+            (0..3).map(move |k| {
+                let (a, b) = (nodes[k], nodes[(k + 1) % 3]);
+                Side { low: a.min(b), high: a.max(b), number: (3 * t + k) as u32 }
+            })
+        })
+    };
+    let mut starts = vec![0_usize; n_points + 1];
+    of_triangles().for_each(|side| starts[side.low as usize + 1] += 1);
+    (0..n_points).for_each(|node| starts[node + 1] += starts[node]);
+    let (mut sides, mut next) = (vec![Side::default(); 3 * triangles.len()], starts.clone());
+    for side in of_triangles() {
+        sides[next[side.low as usize]] = side;
+        next[side.low as usize] += 1;
+    }
+    for bounds in starts.windows(2) {
+        sides[bounds[0]..bounds[1]].sort_unstable();
+    }
+    sides
 }
 
 /// Cosine of the largest turn (60°) within one line of [`long_lines`]: more, and the lines would wind about like a maze,

@@ -103,13 +103,13 @@ fn shapes(subdomain: &SubdomainDraft) -> impl Iterator<Item = &Shape> {
     subdomain.contour.iter().chain(subdomain.holes.iter().filter_map(|hole| hole.shape.as_ref()))
 }
 
-/// The fluxes of a subdomain with their items, one for each place: all edges of a rectangle share one.
+/// The fluxes of a subdomain with their items, one for each place: all edges of a rectangle or hole share one.
 fn fluxes(subdomain: &SubdomainDraft) -> Vec<(Place, String)> {
     let mut found: Vec<(Place, String)> = Vec::new();
     for shape in shapes(subdomain) {
         for (flux, mark) in shape.fluxes.iter().zip(&shape.edges) {
             let Some(formula) = flux else { continue };
-            if found.last().is_none_or(|(place, _)| *place != formula.place) {
+            if found.iter().all(|(place, _)| *place != formula.place) {
                 found.push((formula.place.clone(), shape.item_of(mark)));
             }
         }

@@ -1,6 +1,7 @@
 //! The tables of a problem file, key by key: kinds, ranges, names. How the shapes lie is not looked at here.
 
 use super::error::{Faults, Place};
+use super::grading::{self, GradingSettings};
 use super::limits::{self, Refusal, quote};
 use super::schema::{MeshMethod, MeshSettings, Overrides, SolveSettings};
 use super::shape::{self, Shape};
@@ -42,6 +43,7 @@ pub(super) struct SubdomainDraft {
     pub(super) edge_clearance: f64,
     pub(super) node_clearance: f64,
     pub(super) conforming: bool,
+    pub(super) grading: Option<GradingSettings>,
     pub(super) contour: Option<Shape>,
     pub(super) holes: Vec<HoleDraft>,
     pub(super) place: Range<usize>,
@@ -191,6 +193,10 @@ fn subdomain(
     let mut names = HashSet::new();
     let named = holes.iter().filter(|hole| names.insert(hole.name.as_str())).filter_map(|hole| hole.shape.as_ref());
     distinct_edges(reader, contour.iter().chain(named));
+    let (division, clearance) = (division.unwrap_or_default(), clearance.unwrap_or_default());
+    let shapes: Vec<Option<&Shape>> =
+        std::iter::once(contour.as_ref()).chain(holes.iter().map(|hole| hole.shape.as_ref())).collect();
+    let grading = grading::read(reader, &table, &shapes, division, clearance);
     let subdomain = SubdomainDraft {
         name,
         item,
@@ -200,11 +206,12 @@ fn subdomain(
         shear_modulus_place: table.get("shear_modulus").map(|value| value.span()),
         formulation,
         formulation_unread,
-        division: division.unwrap_or_default(),
-        clearance: clearance.unwrap_or_default(),
+        division,
+        clearance,
         edge_clearance,
         node_clearance,
         conforming: conforming.unwrap_or_default(),
+        grading,
         contour,
         holes,
         place: table.place,
@@ -220,7 +227,11 @@ fn hole(reader: &mut Reader<'_>, mut table: Table<'_, '_>, number: usize) -> (Ho
     table.item = format!("{of}, hole {}", quote(&name));
     reader.known_keys(&table, "[[subdomain.hole]]", HOLE_KEYS);
     let nodes = table.get("nodes").and_then(|value| reader.nodes(&table.item, value));
-    let shape = shape::read(reader, &table, &format!("{name}/"));
+    let flux = shape::flux(reader, &table);
+    let mut shape = shape::read(reader, &table, &format!("{name}/"));
+    // An edge with a flux of its own keeps it.
+    let fluxes = shape.iter_mut().flat_map(|shape| &mut shape.fluxes);
+    fluxes.filter(|own| own.is_none()).for_each(|own| own.clone_from(&flux));
     (HoleDraft { name, item: table.item, nodes, shape, place: table.place }, name_place)
 }
 

@@ -2,6 +2,7 @@
 
 use super::error::{Place, Source};
 use super::formula::Formula;
+use super::grading::GradingSettings;
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::{Division, Outline};
 use nmt_mfdm::{Formulation, HoleCondition, Load, SolveParams, Solver, StarChoice, Test, Trial};
@@ -47,6 +48,8 @@ pub struct Subdomain {
     pub node_clearance: f64,
     /// True where its nodes on common edges shall be those of its neighbours too; false by default.
     pub conforming: bool,
+    /// How its spacing varies; `None` where it does not.
+    pub grading: Option<GradingSettings>,
     /// The main contour, either orientation.
     pub contour: Outline,
     /// The holes in the order of the file.

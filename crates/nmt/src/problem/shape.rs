@@ -108,8 +108,8 @@ fn read_one(reader: &mut Reader<'_>, table: &Table<'_, '_>, key: &str, prefix: &
     Some(Shape { outline, item: table.item.clone(), place, vertices, edges, fluxes })
 }
 
-/// `neumann` of an edge, or of all edges of a circle, ellipse or rectangle.
-fn flux(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Formula> {
+/// `neumann` of an edge, or of all edges of a circle, ellipse, rectangle or hole.
+pub(super) fn flux(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Formula> {
     let value = table.get("neumann")?;
     formula::of_the_plane(reader, &table.item, "neumann", value, "\"0\"")
 }

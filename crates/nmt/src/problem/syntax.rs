@@ -1,6 +1,7 @@
 //! Text to a TOML tree with places; its syntax errors in our words. Only the files beside this one name toml.
 
 use super::error::Faults;
+use super::habits;
 use super::tree::cut;
 use toml::de::{DeTable, Error};
 
@@ -26,8 +27,14 @@ pub(super) fn parse<'t>(text: &'t str, faults: &mut Faults) -> Option<DeTable<'t
             continue;
         }
         told_to = text.get(span.start..).and_then(|rest| rest.find('\n')).map_or(usize::MAX, |n| span.start + n + 1);
-        let (message, remedy) = in_our_words(error, text.get(span.clone()).unwrap_or_default());
-        faults.push(span, "", message, remedy);
+        // Of a key that stands twice there is nothing else to say.
+        let is_twice = error.message().starts_with(DUPLICATE_KEY);
+        if let Some(meant) = habits::explained(text, span.start).filter(|_| !is_twice) {
+            faults.push(meant.place, "", format!("this is not TOML: {}", meant.message), meant.remedy);
+        } else {
+            let (message, remedy) = in_our_words(error, text.get(span.clone()).unwrap_or_default());
+            faults.push(span, "", message, remedy);
+        }
         // After a bracket that does not close, nothing that follows is what it seems.
         if !LOCAL.iter().any(|start| error.message().starts_with(start)) {
             break;

@@ -1,6 +1,7 @@
 //! Typed access to a TOML tree: every value of the wrong kind or out of its range becomes a fault with its place.
 
 use super::error::Faults;
+use super::habits;
 use super::limits::{self, Refusal, quote};
 use super::suggest;
 use nmt_geom::Point;
@@ -52,6 +53,8 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "edge_clearance",
     "node_clearance",
     "conforming",
+    "density",
+    "refine",
     "outline",
     "circle",
     "ellipse",
@@ -59,7 +62,9 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "hole",
 ];
 /// The keys of `[[subdomain.hole]]`.
-pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle"];
+pub(super) const HOLE_KEYS: &[&str] = &["name", "nodes", "outline", "circle", "ellipse", "rectangle", "neumann"];
+/// The keys of an entry of `refine`.
+pub(super) const REFINE_KEYS: &[&str] = &["point", "edge", "size", "growth"];
 /// The keys of `[mesh]`.
 pub(super) const MESH_KEYS: &[&str] = &["method", "elim", "smooth"];
 /// The keys of `[solve]`.
@@ -125,7 +130,7 @@ impl Reader<'_> {
                 }
                 (None, _) if word == "neumann" => {
                     "write it at its edge: in an item of `outline`, { line = true, neumann = \"0\" }, or among the keys of a \
-                     circle, ellipse or rectangle"
+                     circle, ellipse or rectangle, or of a hole for all its edges"
                         .to_owned()
                 }
                 (None, Some(other)) => format!("`{word}` belongs in {other} ({list})"),
@@ -276,7 +281,14 @@ impl Reader<'_> {
                 let n = items.len();
                 let message =
                     format!("{} must be {kind}, found {n} value{}", subject(name), if n == 1 { "" } else { "s" });
-                self.faults.push(value.span(), item, message, format!("give 2, for example {}", assign(name, example)));
+                let are_numbers = (3..=4).contains(&n) && items.iter().all(|item| as_number(item.get_ref()).is_some());
+                let comma = if are_numbers { "; decimals have a point, 1.5, and no comma" } else { "" };
+                self.faults.push(
+                    value.span(),
+                    item,
+                    message,
+                    format!("give 2, for example {}{comma}", assign(name, example)),
+                );
                 None
             }
             _ => self.wrong_kind(item, name, kind, value, example),
@@ -294,7 +306,11 @@ impl Reader<'_> {
     ) -> Option<T> {
         // A number in quotes is the commonest of all.
         let unquoted = value.get_ref().as_str().filter(|text| kind.contains("number") && text.parse::<f64>().is_ok());
-        let remedy = match unquoted {
+        let formula = value.get_ref().as_str().filter(|_| kind.contains("number")).and_then(habits::value_of);
+        let remedy = match unquoted.or(formula.as_deref()) {
+            Some(number) if unquoted.is_none() => {
+                format!("formulas stand in curves and data alone; write its value, {number}")
+            }
             Some(number) if !name.is_empty() => format!("write it without quotes: {}", assign(name, number)),
             Some(number) => format!("write it without quotes: {number}"),
             None => format!("write, for example, {}", assign(name, example)),

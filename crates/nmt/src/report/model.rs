@@ -11,8 +11,8 @@ use crate::report::singular::singular_vertices;
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::warnings;
-use nmt_cloud::{Census, Closing, Cloud, CloudQuality, Section};
-use nmt_geom::Point;
+use nmt_cloud::{Achieved, Census, Closing, Cloud, CloudQuality, Section};
+use nmt_geom::{NodeId, Point};
 use nmt_tri::{MeshCensus, quality};
 use serde::Serialize;
 
@@ -58,8 +58,11 @@ pub struct SubdomainReport {
     pub area: f64,
     /// Centroid of the polygon.
     pub centroid: Point,
-    /// h_x and h_y.
+    /// h_x and h_y; of a graded cloud those of its coarsest lattice.
     pub spacing: [f64; 2],
+    /// Spacings asked for at the nodes of a graded cloud.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub local_spacing: Option<LocalSpacingReport>,
     /// Grid points by fate.
     pub census: CensusReport,
     /// Edges divided by chords.
@@ -84,6 +87,29 @@ pub struct SubdomainReport {
     pub poisson: Option<PoissonReport>,
     /// Seconds by stage, filled in by whoever holds the clock.
     pub seconds: Seconds,
+}
+
+/// Spacings of a graded cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LocalSpacingReport {
+    /// The least that is asked for at a node.
+    pub min: f64,
+    /// The largest.
+    pub max: f64,
+    /// Nearest-node distance over what is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub achieved: Option<AchievedReport>,
+}
+
+/// Nearest-node distances over the spacings asked for; see [`nmt_cloud::Achieved`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AchievedReport {
+    /// The least.
+    pub min: f64,
+    /// The middle one.
+    pub median: f64,
+    /// The largest.
+    pub max: f64,
 }
 
 /// Grid points by fate.
@@ -391,6 +417,7 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         ratio: q.ratio,
         nearest_variation: q.nearest_variation,
     };
+    let spread_of_nodes = nmt_cloud::quality(cloud);
     let Census { grid, outside, in_hole, near_edge, near_node, kept } = cloud.census();
     SubdomainReport {
         name: name.into(),
@@ -400,9 +427,10 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         area: cloud.boundary().area(),
         centroid: cloud.boundary().centroid(),
         spacing: cloud.spacing(),
+        local_spacing: local_spacing(cloud, spread_of_nodes.as_ref()),
         census: CensusReport { grid, outside, in_hole, near_edge, near_node, kept },
         divisions: cloud.closings().iter().map(division).collect(),
-        cloud_quality: nmt_cloud::quality(cloud).map(spread),
+        cloud_quality: spread_of_nodes.map(spread),
         mesh: None,
         smoothing: None,
         quality: None,
@@ -410,6 +438,17 @@ fn cloud_report(name: &str, edge_names: &[String], cloud: &Cloud) -> SubdomainRe
         poisson: None,
         seconds: Seconds::default(),
     }
+}
+
+fn local_spacing(cloud: &Cloud, quality: Option<&CloudQuality>) -> Option<LocalSpacingReport> {
+    if !cloud.is_graded() {
+        return None;
+    }
+    let asked = (0..cloud.n_nodes()).map(|node| cloud.local_spacing(NodeId::of(node)));
+    let (min, max) = asked.fold((f64::INFINITY, 0.0f64), |(min, max), h| (min.min(h), max.max(h)));
+    let achieved = quality.and_then(|quality| quality.achieved);
+    let achieved = achieved.map(|Achieved { min, median, max }| AchievedReport { min, median, max });
+    Some(LocalSpacingReport { min, max, achieved })
 }
 
 fn mesh_report(part: &MeshPart) -> SubdomainReport {

@@ -68,7 +68,16 @@ impl<U: Fn(i32) -> String> Text<U> {
         let census = &s.census;
         let interior = s.nodes - s.boundary_nodes;
         self.row("nodes", format!("{} ({} on the boundary, {interior} inside)", s.nodes, s.boundary_nodes));
-        self.row("spacing h_x, h_y", format!("{}, {}{u1}", number(s.spacing[0]), number(s.spacing[1])));
+        match &s.local_spacing {
+            None => self.row("spacing h_x, h_y", format!("{}, {}{u1}", number(s.spacing[0]), number(s.spacing[1]))),
+            Some(local) => {
+                self.row("spacing", format!("{} to {}{u1}, graded", number(local.min), number(local.max)));
+                if let Some(a) = &local.achieved {
+                    let ratios = format!("min {:.2}, median {:.2}, max {:.2}", a.min, a.median, a.max);
+                    self.row("achieved / asked", ratios);
+                }
+            }
+        }
         self.row(
             "grid points",
             format!(

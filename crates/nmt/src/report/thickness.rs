@@ -35,7 +35,6 @@ pub struct ThinSpot {
 pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
     let boundary = cloud.boundary();
     let index = boundary.index();
-    let [h_x, h_y] = cloud.spacing();
     let ends: Vec<[Point; 2]> = boundary.all_ends().collect();
     let lengths: Vec<f64> = ends.iter().map(|[a, b]| distance(*a, *b)).collect();
     let mut before = Vec::with_capacity(ends.len()); // length along its loop before each segment
@@ -51,13 +50,14 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
         loop_length.extend(std::iter::repeat_n(total, count));
     }
     let sharp = sharp_vertices(cloud);
+    let rates = Rates { cloud };
     let mut thinnest: Option<(f64, Point)> = None;
     for (k, [a, b]) in ends.iter().enumerate() {
         let direction = sub(*b, *a);
         let normal = [-direction[1] / lengths[k], direction[0] / lengths[k]]; // into the material
         let middle = along(*a, 0.5, direction);
         // Spacings that a unit step along the normal counts for.
-        let rate = (normal[0].abs() / h_x).max(normal[1].abs() / h_y);
+        let rate = rates.at(k, normal);
         let reach = (FEWEST_ACROSS - 1) as f64 / rate * (1.0 - 1e-9);
         let mut nearest: Option<(f64, usize)> = None;
         index.candidates(middle, along(middle, reach, normal), 0.0, |other| {
@@ -74,13 +74,31 @@ pub fn thinnest(cloud: &Cloud) -> Option<ThinSpot> {
         let sine = cross(direction, sub(ends[other][1], ends[other][0])).abs() / (lengths[k] * lengths[other]);
         let path_by_corner = width * (1.0 - facing) / sine;
         let side_of_a_corner = (path / path_by_corner - 1.0).abs() < CORNER_PATH_REL;
-        let across = width * rate;
+        // Where the spacing varies, it is taken half from either wall.
+        let across = 0.5 * width * (rate + rates.at(other, normal));
         let tip = sharp.iter().any(|v| width > TIP_REL * v.slope * distance(middle, v.at));
         if facing < FACING_COSINE && !side_of_a_corner && !tip && thinnest.is_none_or(|(least, _)| across < least) {
             thinnest = Some((across, along(middle, width / 2.0, normal)));
         }
     }
     thinnest.map(|(across, at)| ThinSpot { nodes_across: ((across + 1e-9).floor() as usize).max(1) + 1, at })
+}
+
+/// How many spacings a length is.
+struct Rates<'a> {
+    cloud: &'a Cloud,
+}
+
+impl Rates<'_> {
+    /// Spacings a unit of length along `normal` at a boundary segment.
+    fn at(&self, segment: usize, normal: Point) -> f64 {
+        let cloud = self.cloud;
+        if cloud.is_graded() {
+            return 1.0 / cloud.local_spacing(cloud.boundary().segments()[segment].from);
+        }
+        let [h_x, h_y] = cloud.spacing();
+        (normal[0].abs() / h_x).max(normal[1].abs() / h_y)
+    }
 }
 
 /// A vertex of the outline whose sides meet at an acute angle.

@@ -37,6 +37,12 @@ fn four_parts_that_conform() -> String {
     FOUR_PARTS.replace("nodes =", "conforming = true\nnodes =")
 }
 
+fn written(write: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> String {
+    let mut sink = Vec::new();
+    write(&mut sink).expect("a sink that takes all");
+    String::from_utf8(sink).expect("text")
+}
+
 fn problem(text: &str) -> Problem {
     Problem::parse("test.toml", text, &Overrides::default()).expect("a sound problem")
 }
@@ -89,7 +95,7 @@ fn tags(lines: &[&str], lines_an_item: usize) -> Vec<usize> {
 fn a_square_of_eight_triangles() {
     let parts =
         meshes_of("[[subdomain]]\nname = \"plate\"\nnodes = [3, 3]\nrectangle = { from = [0, 0], to = [1, 1] }");
-    insta::assert_snapshot!(msh_of_meshes(&parts));
+    insta::assert_snapshot!(written(|sink| msh_of_meshes(sink, &parts)));
 }
 
 #[test]
@@ -175,7 +181,7 @@ fn curves_have_their_surface_on_the_left_unless_reversed() {
 fn every_node_and_element_has_one_number_and_counts_are_right() {
     for text in [FOUR_PARTS.to_owned(), four_parts_that_conform()] {
         let parts = meshes_of(&text);
-        let msh = msh_of_meshes(&parts);
+        let msh = written(|sink| msh_of_meshes(sink, &parts));
         for (name, lines_an_item) in [("Nodes", 2), ("Elements", 1)] {
             let mut tags = tags(&section(&msh, name), lines_an_item);
             tags.sort_unstable();
@@ -188,7 +194,8 @@ fn every_node_and_element_has_one_number_and_counts_are_right() {
 fn the_solution_is_at_nodes_and_where_subdomains_share_them_at_nodes_of_triangles() {
     for (text, kind) in [(FOUR_PARTS.to_owned(), "NodeData"), (four_parts_that_conform(), "ElementNodeData")] {
         let solved = solve_problem(&problem(&text)).expect("a solution");
-        let msh = msh_of_solutions(&solved.iter().map(NodeFields::of_torsion).collect::<Vec<_>>());
+        let msh =
+            written(|sink| msh_of_solutions(sink, &solved.iter().map(NodeFields::of_torsion).collect::<Vec<_>>()));
         let names: Vec<&str> =
             msh.split(&format!("${kind}\n")).skip(1).map(|view| view.lines().nth(1).expect("a name")).collect();
         assert_eq!(names, ["\"F\"", "\"tau_zx\"", "\"tau_zy\"", "\"tau\""]);
@@ -208,7 +215,7 @@ fn names_that_meet_stay_apart() {
     let parts = meshes_of(
         "[[subdomain]]\nname = \"12\\\" web\"\nnodes = [3, 3]\noutline = [[0, 0], { name = \"12' web\", line = true }, [1, 0], [1, 1], [0, 1]]",
     );
-    let msh = msh_of_meshes(&parts);
+    let msh = written(|sink| msh_of_meshes(sink, &parts));
     let names = section(&msh, "PhysicalNames");
     assert_eq!(names[..3], ["5", "2 1 \"12' web\"", "1 2 \"12' web (2)\""]);
 }

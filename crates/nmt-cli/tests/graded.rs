@@ -1,0 +1,121 @@
+//! Graded clouds as a user gets them: J, report, files, what is refused.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const J_OF_L: f64 = 0.856_303_210_746_053_2; // three unit squares, two independent high-order solutions to 12 digits
+
+fn nmt(arguments: &[&str], threads: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nmt"));
+    command.args(arguments).env("RAYON_NUM_THREADS", threads).output().expect("the command starts")
+}
+
+fn problem(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/problems").join(name).display().to_string()
+}
+
+/// A fresh directory below the target directory.
+fn scratch(name: &str) -> PathBuf {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("graded-{name}"));
+    let _ = std::fs::remove_dir_all(&directory);
+    std::fs::create_dir_all(&directory).expect("a scratch directory");
+    directory
+}
+
+/// The path of a file of one subdomain, an L with these further keys.
+fn l_with(directory: &Path, keys: &str) -> String {
+    let path = directory.join("l.toml");
+    let outline = "outline = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]";
+    std::fs::write(&path, format!("[[subdomain]]\nnodes = [21, 21]\n{keys}\n{outline}\n")).expect("a scratch file");
+    path.display().to_string()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("stdout is JSON alone")
+}
+
+fn stderr(output: &Output) -> &str {
+    std::str::from_utf8(&output.stderr).expect("UTF-8")
+}
+
+#[test]
+fn the_graded_l_reaches_two_hundred_times_the_accuracy_of_a_uniform_one() {
+    let error = |arguments: &[&str]| {
+        let report = json(&nmt(&[&["solve", arguments[0], "--json"], &arguments[1..]].concat(), "2"));
+        let subdomain = &report["subdomains"][0];
+        let nodes = subdomain["nodes"].as_u64().expect("nodes");
+        (nodes, (subdomain["J"].as_f64().expect("J") / J_OF_L - 1.0).abs())
+    };
+    let graded = problem("graded-l.toml");
+    let (n_graded, of_graded) = error(&[&graded]);
+    let uniform = l_with(&scratch("uniform"), "");
+    let (n_uniform, of_uniform) = error(&[&uniform, "--nodes", "55,55"]);
+    assert!(n_graded < n_uniform, "{n_graded}, {n_uniform}");
+    assert!(of_graded < 2e-5, "{of_graded}"); // 1.1e-5 measured
+    assert!(of_uniform > 100.0 * of_graded, "{of_uniform}"); // 2.0e-3 measured
+    let (_, local) = error(&[&graded, "--formulation", "local", "--stars", "balanced"]);
+    assert!(local < 1e-4, "{local}"); // 3.7e-5 measured
+}
+
+#[test]
+fn the_report_of_a_graded_cloud_reads_well() {
+    let output = nmt(&["nodes", &problem("graded-l.toml")], "2");
+    assert_eq!(output.status.code(), Some(0));
+    insta::assert_snapshot!(std::str::from_utf8(&output.stdout).expect("UTF-8"));
+}
+
+#[test]
+fn the_report_tells_the_spacings_and_how_they_were_met() {
+    let report = json(&nmt(&["nodes", &problem("graded-l.toml"), "--json"], "2"));
+    let local = &report["subdomains"][0]["local_spacing"];
+    assert_eq!((local["min"].as_f64(), local["max"].as_f64()), (Some(1e-5), Some(0.05)));
+    let achieved = |key: &str| local["achieved"][key].as_f64().expect("a ratio");
+    assert!(achieved("min") > 0.5 && (achieved("median") - 1.0).abs() < 0.2 && achieved("max") < 1.3);
+    let uniform = json(&nmt(&["nodes", &problem("paper-1.toml"), "--json"], "2"));
+    assert!(uniform["subdomains"][0].get("local_spacing").is_none());
+}
+
+#[test]
+fn graded_clouds_are_the_same_to_the_bit_for_one_and_two_threads() {
+    let directory = scratch("identical");
+    let keys = "irregularity = 0.25\ndensity = \"0.02 + 0.1*abs(x - y)\"\nrefine = [{ point = [1, 1], size = 1e-3 }]";
+    let file = l_with(&directory, keys);
+    let runs = ["1", "2"].map(|threads| {
+        let out = directory.join(threads);
+        let output = nmt(&["solve", &file, "--out", &out.display().to_string()], threads);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        ["nodes.csv", "mesh.vtu", "nodes.svg"].map(|name| std::fs::read(out.join(name)).expect("a result"))
+    });
+    assert!(runs[0] == runs[1]);
+}
+
+#[test]
+fn both_ways_to_a_mesh_take_spacings_of_one_to_ten_thousand() {
+    let file = l_with(&scratch("mesh"), "refine = [{ point = [1, 1], size = 1e-5 }, { edge = \"e1\", size = 0.02 }]");
+    let triangles = ["constrained", "unconstrained"].map(|method| {
+        let output = nmt(&["mesh", &file, "--method", method, "--json"], "2");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let report = json(&output);
+        assert!(report["subdomains"][0]["quality"]["min_angle_deg"].as_f64().expect("an angle") > 20.0);
+        report["subdomains"][0]["triangles"].as_u64()
+    });
+    assert_eq!(triangles[0], triangles[1]);
+}
+
+#[test]
+fn what_shows_only_on_the_way_to_a_cloud_is_told_with_its_place() {
+    let directory = scratch("faults");
+    let fault = |keys: &str| {
+        let output = nmt(&["check", &l_with(&directory, keys)], "2");
+        assert_eq!(output.status.code(), Some(1), "{keys}");
+        stderr(&output).replace(&directory.display().to_string(), "")
+    };
+    let all = [
+        fault("density = \"0.3*sqrt((x - 1)^2 + (y - 1)^2)\""),
+        fault("density = \"sqrt(x - 0.5)\""),
+        fault("density = \"1e-5\""),
+        fault("density = \"1e-9*(1 + x)\""),
+    ];
+    insta::assert_snapshot!(all.join("\n"));
+}

@@ -1,0 +1,189 @@
+//! Where a spacing function rises too fast: the places from which the spacing grows instead.
+
+use crate::error::CloudError;
+use crate::generate::MAX_GRID_POINTS;
+use crate::nested::{Cell, NestedLattice};
+use crate::sources::Source;
+use crate::spacing::Asked;
+use nmt_geom::Point;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+/// A function is looked at on at least this many cells across the envelope.
+pub(crate) const CELLS_ACROSS: u32 = 64;
+
+/// A cell in which the function varies by more than this factor is looked at more closely.
+const MUCH: f64 = 1.5;
+
+/// A slope above the growth by no more than this fraction is rounding.
+const SLOPE_SLACK: f64 = 1.0e-6;
+
+/// Places that the spacing may grow from, at most.
+const MOST_SOURCES: usize = 4_000_000;
+
+/// The function at the corners of a cell, the middles of its sides and its centre: rows from below.
+pub(crate) type Nine = [[f64; 3]; 3];
+
+/// Pairs of neighbours among the nine, as (row, column), the first below or left of the second.
+const NEIGHBOURS: [[(usize, usize); 2]; 16] = [
+    [(0, 0), (0, 1)],
+    [(0, 1), (0, 2)],
+    [(1, 0), (1, 1)],
+    [(1, 1), (1, 2)],
+    [(2, 0), (2, 1)],
+    [(2, 1), (2, 2)],
+    [(0, 0), (1, 0)],
+    [(0, 1), (1, 1)],
+    [(0, 2), (1, 2)],
+    [(1, 0), (2, 0)],
+    [(1, 1), (2, 1)],
+    [(1, 2), (2, 2)],
+    [(0, 0), (1, 1)],
+    [(0, 2), (1, 1)],
+    [(1, 1), (2, 0)],
+    [(1, 1), (2, 2)],
+];
+
+/// The depth of cells at which looking at a function begins.
+pub(crate) fn first_depth(lattice: &NestedLattice) -> i32 {
+    let mut depth = lattice.root().depth;
+    let most = f64::from(lattice.cells[0].max(lattice.cells[1]));
+    while most * 2f64.powi(depth) < f64::from(CELLS_ACROSS) {
+        depth += 1;
+    }
+    depth
+}
+
+/// The nine values of a cell; those at its corners (lower left, lower right, upper left, upper right) may be known.
+pub(crate) fn nine(
+    lattice: &NestedLattice,
+    cell: Cell,
+    corners: Option<[f64; 4]>,
+    function: &Asked,
+) -> Result<Nine, CloudError> {
+    let mut values = [[0.0; 3]; 3];
+    let at = |row: usize, column: usize| place(lattice, cell, row, column);
+    for (row, values) in values.iter_mut().enumerate() {
+        for (column, value) in values.iter_mut().enumerate() {
+            let corner = if row != 1 && column != 1 { Some(row + column / 2) } else { None };
+            *value = match (corner, corners) {
+                (Some(k), Some(known)) => known[k],
+                _ => function.at(at(row, column))?,
+            };
+        }
+    }
+    Ok(values)
+}
+
+/// Where one of the nine values is taken.
+fn place(lattice: &NestedLattice, cell: Cell, row: usize, column: usize) -> Point {
+    lattice.corner(Cell { depth: cell.depth + 1, i: 2 * cell.i + column as i64, j: 2 * cell.j + row as i64 })
+}
+
+/// The four values at the corners of the child number `k`.
+pub(crate) fn corners_of_child(v: &Nine, k: usize) -> [f64; 4] {
+    let (row, column) = (k / 2, k % 2);
+    [v[row][column], v[row][column + 1], v[row + 1][column], v[row + 1][column + 1]]
+}
+
+/// Least and largest of the function in a cell: of the nine values, and by what a parabola through three of them can leave
+/// them, along x and along y together, and as much again; by one level at most, for a function with steps is no parabola.
+pub(crate) fn range(v: &Nine) -> [f64; 2] {
+    let (mut least, mut most, mut bend) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    for &value in v.iter().flatten() {
+        least = least.min(value);
+        most = most.max(value);
+    }
+    for k in 0..3 {
+        bend = bend.max((v[k][0] - 2.0 * v[k][1] + v[k][2]).abs());
+        bend = bend.max((v[0][k] - 2.0 * v[1][k] + v[2][k]).abs());
+    }
+    bend = bend.max((v[0][0] - 2.0 * v[1][1] + v[2][2]).abs());
+    bend = bend.max((v[0][2] - 2.0 * v[1][1] + v[2][0]).abs());
+    [(least - 0.5 * bend).max(FRAC_1_SQRT_2 * least), (most + 0.5 * bend).min(SQRT_2 * most)]
+}
+
+/// The places beside which the function rises by more than `growth` a unit of length: h is the least of the function and
+/// of what grows from them.
+///
+/// A place that limits h elsewhere is one of these: were the function less steep beside it, the next place on the way would
+/// limit h as much.
+pub(crate) fn steep_places(function: &Asked, lattice: &NestedLattice, growth: f64) -> Result<Steep, CloudError> {
+    let (first, least) = (first_depth(lattice), f64::INFINITY);
+    let mut search = Search { function, lattice, growth, first, found: Vec::new(), least };
+    search.visit(lattice.root(), None)?;
+    let Search { mut found, least, .. } = search;
+    let key = |source: &Source| (source.ends[0][1], source.ends[0][0]);
+    found.sort_unstable_by(|a, b| {
+        let ((ay, ax), (by, bx)) = (key(a), key(b));
+        ay.total_cmp(&by).then(ax.total_cmp(&bx))
+    });
+    found.dedup_by_key(|source| source.ends[0]);
+    Ok(Steep { sources: found, least })
+}
+
+/// Where a function is steep.
+pub(crate) struct Steep {
+    /// The places that the spacing grows from.
+    pub sources: Vec<Source>,
+    /// The least value of the function that was met.
+    pub least: f64,
+}
+
+struct Search<'a> {
+    function: &'a Asked,
+    lattice: &'a NestedLattice,
+    growth: f64,
+    first: i32,
+    found: Vec<Source>,
+    least: f64,
+}
+
+impl Search<'_> {
+    fn visit(&mut self, cell: Cell, corners: Option<[f64; 4]>) -> Result<(), CloudError> {
+        if is_beyond(self.lattice, cell) {
+            return Ok(());
+        }
+        if cell.depth < self.first {
+            return cell.children().into_iter().try_for_each(|child| self.visit(child, None));
+        }
+        let values = nine(self.lattice, cell, corners, self.function)?;
+        let half = self.lattice.spacing().map(|s| s * 0.5f64.powi(cell.depth + 1));
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        values.iter().flatten().for_each(|&value| (least, most) = (least.min(value), most.max(value)));
+        self.least = self.least.min(least);
+        let length = |[a, b]: [(usize, usize); 2]| {
+            let along = |d: usize, n: usize| half[d] * n as f64;
+            along(0, a.1.abs_diff(b.1)).hypot(along(1, a.0.abs_diff(b.0)))
+        };
+        let value = |(row, column): (usize, usize)| values[row][column];
+        let is_steep = |pair: &&[(usize, usize); 2]| {
+            (value(pair[0]) - value(pair[1])).abs() > self.growth * length(**pair) * (1.0 + SLOPE_SLACK)
+        };
+        let is_fine = 2.0 * half[0].max(half[1]) <= least;
+        let mut steep = NEIGHBOURS.iter().filter(is_steep).peekable();
+        if steep.peek().is_some() && is_fine {
+            for &[a, b] in steep {
+                let (row, column) = if value(a) < value(b) { a } else { b };
+                let at = place(self.lattice, cell, row, column);
+                self.found.push(Source::point(at, values[row][column], self.growth));
+            }
+            if self.found.len() > MOST_SOURCES {
+                return Err(CloudError::TooFine { spacing: self.least, limit: MAX_GRID_POINTS, place: "" });
+            }
+        } else if !is_fine && (steep.peek().is_some() || most > MUCH * least) {
+            for (k, child) in cell.children().into_iter().enumerate() {
+                self.visit(child, Some(corners_of_child(&values, k)))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// True for a cell right of the envelope or above it.
+pub(crate) fn is_beyond(lattice: &NestedLattice, cell: Cell) -> bool {
+    let beyond = |d: usize, i: i64| {
+        let n = i64::from(lattice.cells[d]);
+        if cell.depth >= 0 { i >= n << cell.depth } else { i << -cell.depth >= n }
+    };
+    beyond(0, cell.i) || beyond(1, cell.j)
+}
