@@ -3,7 +3,7 @@
     python peers.py TASK N
 
 TASK is one of TASKS below, N the number of nodes. The section is the U with a hole that nmt is timed on. Prints one line of
-JSON: {"tool", "nodes", "seconds", "peak_mb"}, CPU seconds of the task alone, and how far the peak of the process rose above what it
+JSON: {"tool", "nodes", "seconds", "peak_mb"}, seconds of the task alone by the clock, as nmt reports its own, and how far the peak of the process rose above what it
 held before. Exits with 3 where the tool is not installed.
 """
 
@@ -35,9 +35,9 @@ def reset_peak():
 
 def measured(tool, nodes, task):
     held = reset_peak()
-    start = time.process_time()
+    start = time.perf_counter()
     result = task()
-    seconds = time.process_time() - start
+    seconds = time.perf_counter() - start
     nodes = nodes(result) if callable(nodes) else nodes
     print(json.dumps({"tool": tool, "nodes": int(nodes), "seconds": seconds, "peak_mb": status("VmHWM") - held}))
 

@@ -24,7 +24,7 @@ const LARGE: (usize, usize) = (4_000_000, 1);
 /// Systems up to this size are also solved directly.
 const DIRECT: usize = 100_000;
 
-/// Times everything, writes the tables of docs/performance.md and docs/figures/growth.svg.
+/// Times everything, writes the tables of docs/performance.md and docs/figures/growth.png.
 pub fn measure(with_large: bool) -> Result<()> {
     let program = run::build()?;
     let peers = Peers::from_environment();
@@ -50,8 +50,9 @@ pub fn measure(with_large: bool) -> Result<()> {
     let tables = growth.tables() + &peers.table(&ratios, &growth);
     print!("{tables}");
     write_between(&tables)?;
-    let picture = root().join("docs/figures/growth.svg");
-    fs::write(&picture, growth.picture()).with_context(|| format!("{} cannot be written", picture.display()))
+    let picture = root().join("docs/figures/growth.png");
+    fs::write(&picture, nmt::plot::png(&growth.picture())?)
+        .with_context(|| format!("{} cannot be written", picture.display()))
 }
 
 const BEGIN: &str = "<!-- cargo xtask perf: from here -->\n";
