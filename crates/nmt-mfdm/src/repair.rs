@@ -77,6 +77,7 @@ pub(crate) fn sound_star(
         let first_size = if order == demand.order { demand.size } else { default_star(order) }.max(n_monomials(order));
         let demand = Demand { order, negative_diagonal: demand.negative_diagonal && order == 2, ..demand };
         let mut best: Option<Candidate> = None;
+        let mut is_last_best = false;
         // Nodes from all sides are tried where the nearest leave a wrong sign, then flatter weights.
         let balanced = (asked != StarChoice::Balanced).then_some((StarChoice::Balanced, 0.0));
         let flatter = FLATTER.map(|g| (StarChoice::Balanced, g));
@@ -89,12 +90,14 @@ pub(crate) fn sound_star(
             let mut last_found = 0;
             for wanted in sizes(first_size, order) {
                 let candidate = try_star(finder, mwls, node, demand, wanted, star);
+                is_last_best = false;
                 if star.len() == last_found {
                     break; // no more nodes are visible
                 }
                 last_found = star.len();
                 if best.is_none_or(|best| candidate.rank() < best.rank()) {
                     best = Some(candidate);
+                    is_last_best = true;
                 }
                 if candidate.condition <= SOUND_CONDITION[order] && !candidate.wrong_sign {
                     break;
@@ -102,10 +105,11 @@ pub(crate) fn sound_star(
             }
         }
         if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
-            // The star of the last try may not be the best one: find that again.
             let Candidate { choice, flattening, wanted, hidden, condition, wrong_sign } = best;
-            finder.choose(choice);
-            try_star(finder, mwls, node, Demand { flattening, ..demand }, wanted, star);
+            if !is_last_best {
+                finder.choose(choice);
+                try_star(finder, mwls, node, Demand { flattening, ..demand }, wanted, star);
+            }
             finder.choose(asked);
             return StarOutcome { order, enlarged: wanted > first_size, hidden, condition, wrong_sign };
         }

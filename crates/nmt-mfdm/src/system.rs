@@ -288,32 +288,27 @@ impl LinearSystem {
     /// once.
     pub fn join(&mut self, mut parts: Vec<(usize, SplitRow)>) {
         parts.sort_by_key(|(number, _)| *number);
-        let mut joined = Self::new(self.n(), self.hole_columns.len());
-        let mut parts = parts.into_iter().peekable();
-        let mut entries: Vec<(u32, f64)> = Vec::new();
-        for k in 0..self.n() {
-            entries.clear();
-            entries.extend(self.matrix.row(k).entries().map(|(column, value)| (column as u32, value)));
-            let mut rhs = self.rhs[k];
-            while let Some((_, part)) = parts.next_if(|(number, _)| *number == k) {
-                entries.extend(part.unknowns);
-                rhs -= part.known;
-                part.holes
-                    .into_iter()
-                    .for_each(|(hole, value)| self.hole_columns[hole as usize].push((k as u32, value)));
+        let mut numbers: Vec<usize> = Vec::new();
+        let mut rows: Vec<Vec<(u32, f64)>> = Vec::new();
+        for of_one in parts.chunk_by(|a, b| a.0 == b.0) {
+            let number = of_one[0].0;
+            let own = self.matrix.row(number).entries().map(|(column, value)| (column as u32, value));
+            let mut entries: Vec<(u32, f64)> = own.collect();
+            for (_, part) in of_one {
+                entries.extend(&part.unknowns);
+                self.rhs[number] -= part.known;
+                let holes = part.holes.iter();
+                holes.for_each(|(hole, value)| self.hole_columns[*hole as usize].push((number as u32, *value)));
             }
             entries.sort_by_key(|(column, _)| *column);
-            for same in entries.chunk_by(|a, b| a.0 == b.0) {
-                joined.matrix.push(same[0].0, same.iter().map(|(_, value)| value).sum());
-            }
-            joined.matrix.end_row();
-            joined.rhs.push(rhs);
+            numbers.push(number);
+            rows.push(entries.chunk_by(|a, b| a.0 == b.0).map(sum_of_same).collect());
         }
-        for (column, all) in joined.hole_columns.iter_mut().zip(&mut self.hole_columns) {
-            all.sort_by_key(|(row, _)| *row);
-            column.extend(all.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|(_, v)| v).sum())));
+        self.matrix.replace_rows(&numbers, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        for column in &mut self.hole_columns {
+            column.sort_by_key(|(row, _)| *row);
+            *column = column.chunk_by(|a, b| a.0 == b.0).map(sum_of_same).collect();
         }
-        *self = joined;
     }
 
     /// Appends an equation.
@@ -326,4 +321,9 @@ impl LinearSystem {
         holes.for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
         self.rhs.push(equation.rhs - equation.row.known);
     }
+}
+
+/// One entry for several of the same number.
+fn sum_of_same(same: &[(u32, f64)]) -> (u32, f64) {
+    (same[0].0, same.iter().map(|(_, value)| value).sum())
 }

@@ -42,12 +42,23 @@ struct Integrals {
     by_y: Vec<f64>,
 }
 
-/// Room for one row, to be used again for the next.
+/// Room for one row, to be used again for the next; and the integrals over triangles that the last rows needed.
+///
+/// Each triangle enters three rows, and in the order of the nodes these are not far from each other. Whoever changes the
+/// stencils begins anew.
 #[derive(Default)]
 pub(crate) struct Gathered {
     nodes: Vec<NodeId>,
     moments: Vec<Moments>,
+    kept: Vec<TriId>,         // the triangle in each slot
+    integrals: Vec<[f64; 2]>, // slot after slot, corner after corner, ∫∇(λ_a φ_m) of every monomial
 }
+
+/// Triangles whose integrals are kept, at most: some rows of a cloud of 10⁶ nodes.
+const KEPT: usize = 1 << 14;
+
+/// The triangle of an empty slot.
+const EMPTY: TriId = TriId(u32::MAX);
 
 impl<'a> WeakForm<'a> {
     /// The blend of the polynomials of `stencils`.
@@ -116,12 +127,32 @@ impl<'a> WeakForm<'a> {
     ) {
         gathered.nodes.clear();
         gathered.moments.clear();
+        let n = n_monomials(stencils.order());
+        if gathered.kept.is_empty() {
+            let slots = KEPT.min(self.mesh.n_triangles());
+            gathered.kept = vec![EMPTY; slots];
+            gathered.integrals = vec![[0.0; 2]; 3 * n * slots];
+        }
         for (triangle, slope) in triangles {
-            for corner in 0..3 {
-                self.gather(stencils, triangle, corner, slope, gathered);
+            let slot = triangle.index() % gathered.kept.len();
+            let integrals = &mut gathered.integrals[3 * n * slot..3 * n * (slot + 1)];
+            if gathered.kept[slot] != triangle {
+                gathered.kept[slot] = triangle;
+                let corners = integrals.chunks_exact_mut(n).enumerate();
+                corners.for_each(|(corner, own)| self.integrate(stencils, triangle, corner, own));
+            }
+            for (corner, own) in integrals.chunks_exact(n).enumerate() {
+                let node = self.mesh.tri_nodes()[triangle.index()][corner];
+                // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
+                let slot = gathered.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
+                    gathered.nodes.push(node);
+                    gathered.moments.push([0.0; MAX_MONOMIALS]);
+                    gathered.nodes.len() - 1
+                });
+                let moments = gathered.moments[slot].iter_mut().zip(own);
+                moments.for_each(|(moment, by)| *moment += slope[0] * by[0] + slope[1] * by[1]);
             }
         }
-        let n = n_monomials(stencils.order());
         for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
             if stencils.interpolates() {
                 sum.add(node, moments[0]);
@@ -135,8 +166,8 @@ impl<'a> WeakForm<'a> {
         }
     }
 
-    /// Adds ∫ slope·∇(λ_a φ_m) over the triangle, and the slivers at its segments, for every monomial φ_m of corner a.
-    fn gather(&self, stencils: &Stencils, triangle: TriId, corner: usize, slope: [f64; 2], gathered: &mut Gathered) {
+    /// ∫∇(λ_a φ_m) over the triangle, and the slivers at its segments, for every monomial φ_m of corner a.
+    fn integrate(&self, stencils: &Stencils, triangle: TriId, corner: usize, integrals: &mut [[f64; 2]]) {
         let corners = self.mesh.corners(triangle);
         let node = self.mesh.tri_nodes()[triangle.index()][corner];
         let radius = stencils.of(node).radius;
@@ -144,25 +175,21 @@ impl<'a> WeakForm<'a> {
         let order = stencils.order();
         let area = self.mesh.area(triangle);
         let lambda_slope = barycentric_gradients(corners)[corner];
-        let along = slope[0] * lambda_slope[0] + slope[1] * lambda_slope[1];
-        // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
-        let slot = gathered.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
-            gathered.nodes.push(node);
-            gathered.moments.push([0.0; MAX_MONOMIALS]);
-            gathered.nodes.len() - 1
-        });
-        let moments = &mut gathered.moments[slot];
+        integrals.fill([0.0; 2]);
         let mut basis = [0.0; MAX_MONOMIALS];
         let mut add = |lambda: &[f64; 3], weight: f64| {
             let offset = |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>();
             monomials([offset(0) * s_x, offset(1) * s_y], order, &mut basis);
-            let (value_part, slope_part) = (weight * along, weight * lambda[corner]);
+            let value_part = lambda_slope.map(|slope| weight * slope);
+            let slope_part = [weight * lambda[corner] * s_x, weight * lambda[corner] * s_y];
             for degree in 0..=order {
                 for b in 0..=degree {
                     let a = degree - b;
-                    let by_x = if a > 0 { slope[0] * s_x * basis[row(a - 1, b)] } else { 0.0 };
-                    let by_y = if b > 0 { slope[1] * s_y * basis[row(a, b - 1)] } else { 0.0 };
-                    moments[row(a, b)] += value_part * basis[row(a, b)] + slope_part * (by_x + by_y);
+                    let by_x = if a > 0 { basis[row(a - 1, b)] } else { 0.0 };
+                    let by_y = if b > 0 { basis[row(a, b - 1)] } else { 0.0 };
+                    let (value, sum) = (basis[row(a, b)], &mut integrals[row(a, b)]);
+                    sum[0] += value_part[0] * value + slope_part[0] * by_x;
+                    sum[1] += value_part[1] * value + slope_part[1] * by_y;
                 }
             }
         };
