@@ -34,6 +34,13 @@ struct Peak {
     value: f64,
 }
 
+/// A value with the size of what it stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weighed {
+    pub value: f64,
+    pub weight: f64,
+}
+
 /// Bands of values, each with its colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scale {
@@ -59,9 +66,16 @@ impl Scale {
     /// For these values, those that cannot be drawn left out; `None` where no value is left. A value counts as zero below
     /// `noise`, rounding of a larger field that this one is a part of.
     pub fn new(values: impl Iterator<Item = f64>, map: Map, noise: f64) -> Option<Self> {
-        let mut values: Vec<f64> = values.filter(|&v| is_drawable(v)).collect();
-        let (&first, least, most) = (values.first()?, f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
-        let [min, max] = [least, most].map(|end| values.iter().copied().fold(first, end));
+        Self::weighed(values.map(|value| Weighed { value, weight: 1.0 }), map, noise)
+    }
+
+    /// [`Self::new`] for values that stand for areas of different size: a peak is what covers little of the picture, however
+    /// many nodes it has.
+    pub fn weighed(values: impl Iterator<Item = Weighed>, map: Map, noise: f64) -> Option<Self> {
+        let mut values: Vec<Weighed> = values.filter(|v| is_drawable(v.value)).collect();
+        let first = values.first()?.value;
+        let (least, most) = (f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
+        let [min, max] = [least, most].map(|end| values.iter().map(|v| v.value).fold(first, end));
         let magnitude = min.abs().max(max.abs());
         if magnitude <= noise || max - min <= CONSTANT_REL * magnitude || max - min < f64::MIN_POSITIVE / CONSTANT_REL {
             let constant = Some(if magnitude <= noise { 0.0 } else { 0.5 * min + 0.5 * max });
@@ -71,7 +85,7 @@ impl Scale {
         let (low, high) = match map {
             Map::Sequential => (min, without_peaks(&mut values, min, max)),
             Map::Diverging => {
-                values.iter_mut().for_each(|v| *v = v.abs());
+                values.iter_mut().for_each(|v| v.value = v.value.abs());
                 let high = without_peaks(&mut values, 0.0, magnitude);
                 (-high, high)
             }
@@ -234,9 +248,15 @@ impl Scale {
 
 /// `max`, the largest of at least one value, or the quantile that stands for it where it lies too far above `low` and the
 /// others. The values are put in another order.
-fn without_peaks(values: &mut [f64], low: f64, max: f64) -> f64 {
-    let rank = (CAP_QUANTILE * values.len() as f64).ceil() as usize;
-    let (_, &mut quantile, _) = values.select_nth_unstable_by(rank.clamp(1, values.len()) - 1, f64::total_cmp);
+fn without_peaks(values: &mut [Weighed], low: f64, max: f64) -> f64 {
+    values.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
+    let total: f64 = values.iter().map(|v| v.weight).sum();
+    let mut above = total;
+    let quantile = values.iter().find(|v| {
+        above -= v.weight;
+        above <= (1.0 - CAP_QUANTILE) * total * (1.0 + CONSTANT_REL)
+    });
+    let quantile = quantile.map_or(max, |v| v.value);
     let has_peaks = max - low > CAP_FACTOR * (quantile - low) && quantile > low;
     if has_peaks { quantile } else { max }
 }
@@ -247,6 +267,18 @@ mod tests {
 
     fn scale(values: &[f64], map: Map) -> Scale {
         Scale::new(values.iter().copied(), map, 0.0).unwrap()
+    }
+
+    #[test]
+    fn a_peak_is_what_covers_little_however_many_nodes_it_has() {
+        // Half of the nodes in a hundredth of a thousandth of the area.
+        let values = |weight: f64| {
+            (0..200).map(move |k| Weighed { value: f64::from(k), weight: if k < 100 { 1.0 } else { weight } })
+        };
+        let of = |weight: f64| Scale::weighed(values(weight), Map::Sequential, 0.0).unwrap();
+        assert_eq!(of(1.0).above, None);
+        assert_eq!(of(1e-5).above, Some(Peak { value: 199.0 }));
+        assert!(of(1e-5).step.times(of(1e-5).last).value() < 110.0);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::contour::{Loop, Surface};
 use super::page::{
     MARGIN, OUTLINE, PAGE_WIDTH, TITLE_SIZE, description, note, outlines, page_points, page_width, title,
 };
-use super::scale::{POWER_GAP, Scale};
+use super::scale::{POWER_GAP, Scale, Weighed};
 use super::scene::{Anchor, Point, Polyline, Precision, Scene, Shape, Stroke};
 use super::simplify;
 use super::text::{Run, Style, width};
@@ -135,8 +135,21 @@ pub(super) fn scene(
         let own = if panels[k].is_signed() { largest(values(k)) } else { 0.0 };
         NOISE_REL * size(&panels[k]).max(own)
     });
+    let areas = parts
+        .iter()
+        .any(|(part, _)| !part.spacings.is_empty())
+        .then(|| parts.iter().map(|(part, _)| node_areas(part)).collect::<Vec<_>>());
     let topologies: Vec<Option<Topology>> = parts.iter().map(|(part, fields)| common_topology(part, fields)).collect();
-    let scales: [Option<Scale>; 4] = std::array::from_fn(|k| Scale::new(values(k), panels[k].map, noise[k]));
+    let scales: [Option<Scale>; 4] = std::array::from_fn(|k| match &areas {
+        None => Scale::new(values(k), panels[k].map, noise[k]),
+        Some(areas) => {
+            let of_part = |((part, fields), areas): (&(Part<'_>, [&[f64]; 4]), &Vec<f64>)| {
+                let values = fields[k].iter().take(part.xy.len()).zip(areas);
+                values.map(|(&value, &weight)| Weighed { value, weight }).collect::<Vec<_>>()
+            };
+            Scale::weighed(parts.iter().zip(areas).flat_map(of_part), panels[k].map, noise[k])
+        }
+    });
     let bars = scales.iter().flatten().map(|scale| scale.bar_width(frame_height)).fold(0.0, f64::max);
     let cell = [left + frame_width + right.max(BAR_GAP + bars), head + frame_height + bottom];
     let total = |k: usize, n: usize| cell[k] * n as f64 + CELL_GAP[k] * (n - 1) as f64;
@@ -265,6 +278,18 @@ fn thinned(ring: &Loop) -> (Option<Polyline>, Vec<Polyline>) {
     }
     let is_area = area.len() > 2;
     (is_area.then(|| Polyline::closed(area)), if is_area { lines } else { Vec::new() })
+}
+
+/// What each node of a part stands for: a third of the triangles around it.
+fn node_areas(part: &Part<'_>) -> Vec<f64> {
+    let mut areas = vec![0.0; part.xy.len()];
+    for triangle in part.triangles {
+        let corners = triangle.map(|node| part.xy.get(node as usize).copied());
+        let [Some(a), Some(b), Some(c)] = corners else { continue };
+        let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        triangle.iter().for_each(|&node| areas[node as usize] += area / 3.0);
+    }
+    areas
 }
 
 #[cfg(test)]
