@@ -248,8 +248,9 @@ fn mended_system(
 fn smoothed(stencils: &Stencils, xy: &[Point], parameters: Vec<f64>) -> Vec<f64> {
     let value = |node: usize| {
         let stencil = stencils.of(NodeId::of(node));
-        let sum: f64 = stencil.nodes.iter().zip(stencil.row(0)).map(|(other, c)| c * parameters[other.index()]).sum();
-        sum - stencils.known_share(NodeId::of(node), 0, xy)
+        let coefficients = || stencil.nodes.iter().copied().zip(stencil.row(0).iter().copied());
+        let sum: f64 = coefficients().map(|(other, c)| c * parameters[other.index()]).sum();
+        sum - stencils.known_share(NodeId::of(node), coefficients(), xy)
     };
     (0..parameters.len()).map(value).collect()
 }

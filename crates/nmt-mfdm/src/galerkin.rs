@@ -1,6 +1,6 @@
 //! The variational formulation with the trial functions as test functions (Bubnov–Galerkin); paper, eq. (18).
 
-use crate::assembly::{Setting, dirichlet_row};
+use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
@@ -24,13 +24,15 @@ struct Element {
 ///
 /// Triangles are summed in their order, so that the result does not depend on the number of threads.
 pub(crate) fn assemble(setting: &Setting, space: TrialSpace, rule: &Rule) -> Result<LinearSystem, MfdmError> {
-    let Setting { mesh, roles, .. } = setting;
+    let Frame { mesh, roles, .. } = setting.frame;
     let n_nodes = mesh.cloud().n_nodes();
     let mut rows: Vec<Row> = (0..n_nodes).map(|_| Row::default()).collect();
     for first in (0..mesh.n_triangles()).step_by(BATCH) {
         let pieces = map_chunks(first..(first + BATCH).min(mesh.n_triangles()), |piece| {
             let (mut finder, mut shapes) = (ShapeFinder::new(space), Shapes::default());
-            piece.map(|t| element(setting, rule, TriId::of(t), &mut finder, &mut shapes)).collect::<Result<Vec<_>, _>>()
+            piece
+                .map(|t| element(setting.frame, rule, TriId::of(t), &mut finder, &mut shapes))
+                .collect::<Result<Vec<_>, _>>()
         });
         for piece in pieces {
             for Element { nodes, matrix, load } in piece? {
@@ -56,7 +58,7 @@ pub(crate) fn assemble(setting: &Setting, space: TrialSpace, rule: &Rule) -> Res
 }
 
 fn element(
-    setting: &Setting,
+    frame: Frame,
     rule: &Rule,
     t: TriId,
     finder: &mut ShapeFinder,
@@ -68,10 +70,10 @@ fn element(
         samples.push(Sampled { shapes: shapes.clone(), weight, load });
         Ok::<(), MfdmError>(())
     };
-    for (p, weight) in places(setting.mesh, rule, setting.fluxes, t) {
-        sample(p, weight, weight * setting.source.at(p)?)?;
+    for (p, weight) in places(frame.mesh, rule, frame.fluxes, t) {
+        sample(p, weight, weight * frame.source.at(p)?)?;
     }
-    for flux in Fluxes::of_triangle(&setting.fluxes.edges, t) {
+    for flux in Fluxes::of_triangle(&frame.fluxes.edges, t) {
         sample(flux.at, 0.0, flux.weight)?;
     }
     let mut nodes: Vec<NodeId> = samples.iter().flat_map(|sample| sample.shapes.nodes.iter().copied()).collect();

@@ -1,6 +1,6 @@
 //! The local formulation: one equation a node, ∇²u = −s inside and where a flux is given; paper, eq. (17).
 
-use crate::assembly::{Setting, dirichlet_row};
+use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::basis::row;
 use crate::error::MfdmError;
 use crate::stencils::Stencils;
@@ -13,7 +13,7 @@ use nmt_geom::NodeId;
 /// The flux itself collocated from a one-sided star is no equation to trust: its own coefficient may be small or of the
 /// wrong sign, and on irregular clouds the error then scatters by two orders of magnitude and need not fall.
 pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
-    let Setting { mesh, stencils, roles, source, .. } = setting;
+    let Setting { frame: Frame { mesh, roles, source, .. }, stencils } = setting;
     LinearSystem::of_pieces(roles, |piece| {
         // Only smoothing polynomials have Dirichlet rows, which are summed.
         let mut sum = RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
@@ -26,9 +26,7 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
             let mut equation = Equation { row: SplitRow::default(), rhs: source.at(mesh.xy()[node.index()])? };
             equation.rhs *= stencil.radius * stencil.radius;
             // The row holds for u less the slope that a flux makes known.
-            for (m, stretch) in [row(2, 0), row(0, 2)].into_iter().zip(stencils.metric().stretch()) {
-                equation.rhs -= stretch * stretch * stencils.known_share(node, m, mesh.xy());
-            }
+            equation.rhs -= stencils.known_share(node, laplacian(stencils, node), mesh.xy());
             laplacian(stencils, node).for_each(|(other, c)| equation.row.add(roles.of(other), -c));
             Ok(equation)
         };

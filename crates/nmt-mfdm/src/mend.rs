@@ -20,7 +20,7 @@ use nmt_geom::NodeId;
 use std::collections::BTreeMap;
 
 /// Least share of the linear elements' own coefficient.
-const SOFT: f64 = 0.5;
+pub(crate) const SOFT: f64 = 0.5;
 
 /// Times that stars are enlarged, by half each time.
 const ROUNDS: usize = 3;

@@ -99,11 +99,14 @@ impl<'a> StarFinder<'a> {
     /// As [`Self::find`], with all nodes that are as far away as the farthest: the star of an interior node of a regular
     /// grid is then as symmetric as the grid \[D16\].
     pub(crate) fn find_shells(&mut self, node: NodeId, size: usize, out: &mut Vec<NodeId>) -> usize {
-        let places = self.surroundings.stretched();
-        let skipped = self.find(node, size + LARGEST_SHELL, out);
-        if self.choice == StarChoice::Balanced || out.len() <= size {
+        if self.choice == StarChoice::Balanced {
             return self.find(node, size, out);
         }
+        let hidden = self.find(node, size + LARGEST_SHELL, out);
+        if out.len() <= size {
+            return hidden;
+        }
+        let places = self.surroundings.stretched();
         let distance = |other: &NodeId| distance_squared(places[other.index()], places[node.index()]);
         let distances = &mut self.distances;
         distances.clear();
@@ -111,7 +114,7 @@ impl<'a> StarFinder<'a> {
         let (_, rim, _) = distances.select_nth_unstable_by(size - 1, f64::total_cmp);
         let limit = *rim * (1.0 + SAME_DISTANCE_REL);
         out.retain(|other| distance(other) <= limit);
-        if skipped == 0 { 0 } else { self.hidden.iter().filter(|d2| **d2 < *rim).count() }
+        self.hidden.iter().filter(|d2| **d2 < *rim).count()
     }
 
     /// The star of `size` visible nodes of the place `at` (user's coordinates), which need not be a node.

@@ -13,6 +13,7 @@
 //! worst seed, 2.7e-3 → 6.7e-4 in the mean.
 
 use crate::assembly::Frame;
+use crate::mend::SOFT;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
@@ -20,9 +21,6 @@ use crate::system::{LinearSystem, Role};
 use crate::variational::hat_energy;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
-
-/// Least share of the hat's energy that a node's own coefficient has after its star was enlarged.
-const LOOSE: f64 = 0.5;
 
 /// Least determinant of the equations of two nodes, over that of their hats' energies; linear elements have 3/4 and more.
 const LOOSE_PAIR: f64 = 0.25;
@@ -70,23 +68,20 @@ pub(crate) fn steady(frame: Frame, around: (&Surroundings, &Nearest), order: usi
 /// The nodes that are hardly held, ascending.
 fn loose_nodes(frame: Frame, system: &LinearSystem) -> Vec<Loose> {
     let energy = |k: usize| hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k));
-    let coefficient = |k: usize, j: usize| {
-        let row = system.matrix.row(k);
-        row.columns.binary_search(&(j as u32)).map_or(0.0, |entry| row.values[entry])
-    };
+    let matrix = &system.matrix;
     let mut loose: Vec<Loose> = Vec::new();
     for k in 0..system.n() {
-        let (own, own_energy) = (coefficient(k, k), energy(k));
-        if own < LOOSE * own_energy {
+        let (own, own_energy) = (matrix.diagonal(k), energy(k));
+        if own < SOFT * own_energy {
             loose.push(Loose { unknown: k, twin: None, energy: own_energy });
         }
-        for (j, there) in system.matrix.row(k).entries() {
+        for (j, there) in matrix.row(k).entries() {
             // Only of the first of two nodes, and only where they could cancel at all.
             if j <= k || 2.0 * there.abs() < own.abs() {
                 continue;
             }
             let other_energy = energy(j);
-            let determinant = own * coefficient(j, j) - there * coefficient(j, k);
+            let determinant = own * matrix.diagonal(j) - there * matrix.entry(j, k as u32);
             if determinant.abs() < LOOSE_PAIR * own_energy * other_energy {
                 loose.push(Loose { unknown: k, twin: Some(j), energy: own_energy });
                 loose.push(Loose { unknown: j, twin: Some(k), energy: other_energy });

@@ -92,7 +92,7 @@ pub struct Stencils {
     rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<StarOutcome>,
-    known: Vec<(NodeId, KnownSlopes)>, // of nodes whose gradient is known in part, ascending
+    known: BTreeMap<NodeId, KnownSlopes>, // of nodes whose gradient is known in part
 }
 
 /// The stencil of one node.
@@ -146,15 +146,12 @@ impl Stencils {
             let mut finder = StarFinder::new(surroundings, nearest, params.choice);
             let (mut mwls, mut star) = (Mwls::default(), Vec::new());
             let mut part = Self::empty(params, metric, piece.start);
-            let StarParams { order, size, smoothing, .. } = params;
             for node in piece {
-                let known = known(NodeId::of(node));
-                let negative_diagonal = node >= surroundings.n_boundary() || known.is_some();
-                let slopes = known.map_or(Slopes::Free, |known| known.slopes);
-                let demand = Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes };
-                let outcome = sound_star(&mut finder, &mut mwls, NodeId::of(node), demand, &mut star);
+                let node = NodeId::of(node);
+                part.known.extend(known(node).map(|known| (node, known)));
+                let demand = part.demand(surroundings, node, params.size);
+                let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
                 part.push(&star, &mut mwls, outcome);
-                part.known.extend(known.map(|known| (NodeId::of(node), known)));
             }
             part
         };
@@ -171,6 +168,15 @@ impl Stencils {
             observer(Event::Nodes { done: all.outcomes.len(), of });
         });
         all
+    }
+
+    /// What the star of a node must carry.
+    fn demand(&self, surroundings: &Surroundings, node: NodeId, size: usize) -> Demand {
+        let StarParams { order, smoothing, .. } = self.params;
+        let known = self.known.get(&node);
+        let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
+        let slopes = known.map_or(Slopes::Free, |known| known.slopes);
+        Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
     }
 
     /// Appends the star that `mwls` holds.
@@ -206,12 +212,9 @@ impl Stencils {
     pub(crate) fn replace(&mut self, surroundings: &Surroundings, nearest: &Nearest, stars: &[(NodeId, usize)]) {
         let mut finder = StarFinder::new(surroundings, nearest, self.params.choice);
         let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-        let StarParams { order, smoothing, .. } = self.params;
         for &(node, size) in stars {
             let k = node.index() - self.first;
-            let negative_diagonal = node.index() >= surroundings.n_boundary();
-            let demand =
-                Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes: Slopes::Free };
+            let demand = self.demand(surroundings, node, size);
             let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
             self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
             // What was appended takes the place of the node's own.
@@ -266,7 +269,7 @@ impl Stencils {
             rows: Vec::new(),
             radii: Vec::new(),
             outcomes: Vec::new(),
-            known: Vec::new(),
+            known: BTreeMap::new(),
         }
     }
 
@@ -275,7 +278,7 @@ impl Stencils {
         if self.params.order == 0 {
             return UsedStars::default();
         }
-        UsedStars::new(self.params, self.first, larger, self.known.iter().copied().collect())
+        UsedStars::new(self.params, self.first, larger, self.known.clone())
     }
 
     /// The metric of their coordinates.
@@ -308,21 +311,22 @@ impl Stencils {
 
     /// What the polynomial of a node meets of its gradient.
     pub(crate) fn known(&self, node: NodeId) -> KnownSlopes {
-        self.known
-            .binary_search_by_key(&node, |(node, _)| *node)
-            .map_or_else(|_| KnownSlopes::default(), |k| self.known[k].1)
+        self.known.get(&node).copied().unwrap_or_default()
     }
 
-    /// What the known slope of a node adds to row `m` of its stencil, times the values: c·(u_k − g·(x_k − x)) summed.
-    pub(crate) fn known_share(&self, node: NodeId, m: usize, xy: &[Point]) -> f64 {
+    /// What the known slope of a node adds to Σ c·u over its star: Σ c·g·(x_k − x).
+    pub(crate) fn known_share(
+        &self,
+        node: NodeId,
+        coefficients: impl Iterator<Item = (NodeId, f64)>,
+        xy: &[Point],
+    ) -> f64 {
         let KnownSlopes { slopes, gradient } = self.known(node);
         if slopes == Slopes::Free {
             return 0.0;
         }
-        let stencil = self.of(node);
         let place = |node: NodeId| self.metric.stretched(xy[node.index()]);
-        let slope = |other: &NodeId| dot(gradient, sub(place(*other), place(node)));
-        stencil.nodes.iter().zip(stencil.row(m)).map(|(other, c)| c * slope(other)).sum()
+        coefficients.map(|(other, c)| c * dot(gradient, sub(place(other), place(node)))).sum()
     }
 
     /// What became of the stars.

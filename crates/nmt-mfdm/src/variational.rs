@@ -1,6 +1,6 @@
 //! The variational formulation with linear hats as test functions, and linear finite elements; paper, eq. (18) \[D13\].
 
-use crate::assembly::{Setting, dirichlet_row};
+use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::blend::barycentric_gradients;
 use crate::error::MfdmError;
 use crate::system::{Equation, LinearSystem, RowSum};
@@ -10,9 +10,9 @@ use nmt_tri::{Mesh, NodeTris};
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
-    LinearSystem::of_pieces(setting.roles, |piece| {
+    LinearSystem::of_pieces(setting.frame.roles, |piece| {
         let mut maker = EquationMaker::new(setting, weak);
-        LinearSystem::of(setting.roles, piece.map(|k| maker.of(k)))
+        LinearSystem::of(setting.frame.roles, piece.map(|k| maker.of(k)))
     })
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct EquationMaker<'a> {
 
 impl<'a> EquationMaker<'a> {
     pub fn new(setting: &'a Setting<'a>, weak: &'a WeakForm<'a>) -> Self {
-        let sum = RowSum::new(setting.mesh.cloud().n_nodes());
+        let sum = RowSum::new(setting.frame.mesh.cloud().n_nodes());
         Self { setting, weak, sum, gathered: Gathered::default() }
     }
 
@@ -35,7 +35,7 @@ impl<'a> EquationMaker<'a> {
     /// # Errors
     /// [`MfdmError::Datum`] where the source is not finite.
     pub fn of(&mut self, k: usize) -> Result<Equation, MfdmError> {
-        let Setting { mesh, roles, node_tris, source, fluxes, source_rule, .. } = *self.setting;
+        let Frame { mesh, roles, node_tris, source, fluxes, source_rule } = self.setting.frame;
         let node = roles.node(k);
         if let Some(equation) = dirichlet_row(self.setting, node, &mut self.sum)? {
             return Ok(equation);
