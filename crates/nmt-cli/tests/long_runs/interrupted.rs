@@ -1,22 +1,9 @@
 //! What a run that does not end well leaves behind: nothing.
-#![cfg(unix)]
 
-use std::path::{Path, PathBuf};
+use crate::square;
+use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
-
-/// A fresh directory below the target directory, and in it a problem file of so many nodes a side.
-fn square(name: &str, nodes: usize) -> (PathBuf, String) {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("interrupted-{name}"));
-    let _ = std::fs::remove_dir_all(&directory);
-    std::fs::create_dir_all(&directory).expect("a scratch directory");
-    let path = directory.join("square.toml");
-    let problem = format!(
-        "[[subdomain]]\nnodes = [{nodes}, {nodes}]\nirregularity = 0.25\nrectangle = {{ from = [0, 0], to = [1, 1] }}\n"
-    );
-    std::fs::write(&path, problem).expect("a scratch file");
-    (directory, path.display().to_string())
-}
 
 fn names(directory: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(directory).into_iter().flatten();
@@ -57,7 +44,7 @@ fn has_begun(out: &Path) -> bool {
 
 #[test]
 fn ctrl_c_while_solving_leaves_no_directory() {
-    let (directory, file) = square("solving", 401);
+    let (directory, file) = square("interrupted-solving", 401);
     let out = directory.join("new/out");
     let child = start_until(&["solve", &file, "--out", &out.display().to_string()], || has_begun(&out));
     let output = interrupt(child, "-INT");
@@ -69,7 +56,7 @@ fn ctrl_c_while_solving_leaves_no_directory() {
 
 #[test]
 fn ctrl_c_while_files_are_written_leaves_those_of_the_run_before() {
-    let (directory, file) = square("writing", 301);
+    let (directory, file) = square("interrupted-writing", 301);
     let out = directory.join("out");
     std::fs::create_dir_all(&out).expect("a directory");
     for name in ["nodes.csv", "mine.txt"] {
@@ -87,7 +74,7 @@ fn ctrl_c_while_files_are_written_leaves_those_of_the_run_before() {
 
 #[test]
 fn sigterm_cleans_up_too_and_is_told_from_ctrl_c_by_its_code() {
-    let (directory, file) = square("terminated", 401);
+    let (directory, file) = square("interrupted-terminated", 401);
     let out = directory.join("out");
     let child = start_until(&["mesh", &file, "--out", &out.display().to_string()], || has_begun(&out));
     assert_eq!(interrupt(child, "-TERM").status.code(), Some(143));
@@ -96,7 +83,7 @@ fn sigterm_cleans_up_too_and_is_told_from_ctrl_c_by_its_code() {
 
 #[test]
 fn a_run_that_ends_well_puts_all_files_in_place_and_leaves_no_temporary() {
-    let (directory, file) = square("well", 15);
+    let (directory, file) = square("interrupted-well", 15);
     let out = directory.join("out");
     for _ in 0..2 {
         let output = Command::new(env!("CARGO_BIN_EXE_nmt")).args(["nodes", &file, "--out"]).arg(&out).output();
@@ -108,7 +95,7 @@ fn a_run_that_ends_well_puts_all_files_in_place_and_leaves_no_temporary() {
 /// A limit on the size of files stands for a full disk: the system refuses a write in the midst of a file.
 #[test]
 fn a_file_that_cannot_be_completed_leaves_none() {
-    let (directory, file) = square("full", 61);
+    let (directory, file) = square("interrupted-full", 61);
     let out = directory.join("out");
     let script = "trap '' XFSZ; ulimit -f 200; exec \"$0\" solve \"$1\" --out \"$2\"";
     let output = Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_nmt"), &file]).arg(&out).output();
@@ -122,7 +109,7 @@ fn a_file_that_cannot_be_completed_leaves_none() {
 
 #[test]
 fn an_error_leaves_the_directory_as_it_was() {
-    let (directory, file) = square("error", 15);
+    let (directory, file) = square("interrupted-error", 15);
     let run = |arguments: &[&str], out: &Path| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_nmt"));
         command.args(arguments).arg(&file).arg("--out").arg(out).output().expect("the command starts")

@@ -1,21 +1,8 @@
 //! The bar of progress: on a terminal after a second, nowhere else. The terminal is that of `script`, of util-linux.
-#![cfg(target_os = "linux")]
 
-use std::path::{Path, PathBuf};
+use crate::square;
+use std::path::Path;
 use std::process::{Command, Output};
-
-/// A fresh directory below the target directory, and in it a problem file of so many nodes a side.
-fn square(name: &str, nodes: usize) -> (PathBuf, String) {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("progress-{name}"));
-    let _ = std::fs::remove_dir_all(&directory);
-    std::fs::create_dir_all(&directory).expect("a scratch directory");
-    let path = directory.join("square.toml");
-    let problem = format!(
-        "[[subdomain]]\nnodes = [{nodes}, {nodes}]\nirregularity = 0.25\nrectangle = {{ from = [0, 0], to = [1, 1] }}\n"
-    );
-    std::fs::write(&path, problem).expect("a scratch file");
-    (directory, path.display().to_string())
-}
 
 /// What the command writes to a terminal on stderr; stdout goes to a file, whose text comes second.
 fn on_a_terminal(directory: &Path, arguments: &str) -> (String, String) {
@@ -41,7 +28,7 @@ fn without_a_terminal(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_long_run_shows_its_stages_on_a_terminal_and_nothing_of_them_on_stdout() {
-    let (directory, file) = square("long", 501);
+    let (directory, file) = square("progress-long", 501);
     let out = directory.join("out");
     let (shown, stdout) = on_a_terminal(&directory, &format!("solve '{file}' --json --out '{}'", out.display()));
     // What comes before the first second is up depends on the machine.
@@ -56,7 +43,7 @@ fn a_long_run_shows_its_stages_on_a_terminal_and_nothing_of_them_on_stdout() {
 
 #[test]
 fn the_option_and_a_short_run_show_nothing() {
-    let (directory, file) = square("none", 301);
+    let (directory, file) = square("progress-none", 301);
     let (shown, stdout) = on_a_terminal(&directory, &format!("solve '{file}' --no-progress"));
     assert_eq!(shown, "");
     assert!(stdout.contains("J = T/(Gθ)"));
@@ -66,7 +53,7 @@ fn the_option_and_a_short_run_show_nothing() {
 
 #[test]
 fn without_a_terminal_nothing_is_written() {
-    let (_, file) = square("piped", 401);
+    let (_, file) = square("progress-piped", 401);
     let output = without_a_terminal(&["solve", &file]);
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");

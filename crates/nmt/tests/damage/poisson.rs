@@ -1,8 +1,8 @@
 //! What nmt says about a damaged Poisson problem: each case is one edit of a sound one, the snapshot every fault it finds.
 
+use crate::case::{Case, Report, case, option};
 use nmt::NmtError;
 use nmt::prelude::*;
-use std::fmt::Write;
 
 /// Sound. Lines are counted from the first below.
 const SOUND: &str = r#"[[subdomain]]
@@ -27,21 +27,6 @@ source = "1 + x*y"
 boundary = "x^2"
 exact = "x^2 - y^2"
 "#;
-
-/// One edit: the first occurrence of `find` becomes `put`.
-struct Case {
-    title: &'static str,
-    edits: &'static [(&'static str, &'static str)],
-    options: &'static [(&'static str, &'static str)],
-}
-
-const fn case(title: &'static str, edits: &'static [(&'static str, &'static str)]) -> Case {
-    Case { title, edits, options: &[] }
-}
-
-const fn option(title: &'static str, options: &'static [(&'static str, &'static str)]) -> Case {
-    Case { title, edits: &[], options }
-}
 
 const SOURCE: &str = "source = \"1 + x*y\"\n";
 
@@ -98,13 +83,6 @@ const CASES: &[Case] = &[
     case("an exact solution without a norm", &[("\"x^2 - y^2\"", "\"1e200*x\"")]),
 ];
 
-fn edited(case: &Case) -> String {
-    case.edits.iter().fold(SOUND.to_owned(), |text, (find, put)| {
-        assert!(text.contains(find), "{}: {find:?} is not in the file", case.title);
-        text.replacen(find, put, 1)
-    })
-}
-
 fn overrides(case: &Case) -> Overrides {
     let of = |key: &str| case.options.iter().find(|(name, _)| *name == key).map(|(_, value)| (*value).to_owned());
     Overrides {
@@ -117,7 +95,7 @@ fn overrides(case: &Case) -> Overrides {
 }
 
 fn faults(case: &Case) -> Vec<String> {
-    let errors = match Problem::parse("plate.toml", &edited(case), &overrides(case)) {
+    let errors = match Problem::parse("plate.toml", &case.damaged(SOUND), &overrides(case)) {
         Err(errors) => errors,
         Ok(problem) => match solve_any(&problem) {
             Err(NmtError::Problem(errors)) => errors,
@@ -135,25 +113,7 @@ fn the_file_that_is_damaged_is_solved() {
 
 #[test]
 fn every_damage_is_named_with_its_place_and_a_remedy() {
-    let (mut report, mut silent) = (String::new(), Vec::new());
-    for case in CASES {
-        writeln!(report, "# {}", case.title).unwrap();
-        for (find, put) in case.edits.iter().filter(|(find, _)| *find != SOUND) {
-            writeln!(report, "- {}", find.trim_end().replace('\n', "\n- ")).unwrap();
-            if !put.is_empty() {
-                writeln!(report, "+ {}", put.trim_end().replace('\n', "\n+ ")).unwrap();
-            }
-        }
-        for (name, value) in case.options {
-            writeln!(report, "+ --{name} {value}").unwrap();
-        }
-        let faults = faults(case);
-        if faults.is_empty() {
-            silent.push(case.title);
-        }
-        faults.iter().for_each(|fault| writeln!(report, "{fault}").unwrap());
-        report.push('\n');
-    }
-    insta::assert_snapshot!(report);
+    let Report { text, silent } = Report::of(CASES, SOUND, faults);
+    insta::assert_snapshot!(text);
     assert!(silent.is_empty(), "no fault was found in: {silent:?}");
 }

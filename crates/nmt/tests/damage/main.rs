@@ -1,0 +1,5 @@
+//! What nmt says about damaged problem files.
+
+mod case;
+mod poisson;
+mod problems;
