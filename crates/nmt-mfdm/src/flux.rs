@@ -38,7 +38,7 @@ pub(crate) struct Sample {
 pub(crate) struct NodeFlux {
     /// The node.
     pub node: NodeId,
-    sides: [Option<Side>; 2],
+    sides: (Side, Option<Side>),
 }
 
 /// n·∇u = q on one side of a node.
@@ -48,26 +48,29 @@ struct Side {
     q: f64,
 }
 
-/// Sides whose normals differ by less than this sine are one smooth boundary: the gradient from both would be that of
-/// small differences.
+/// Sides whose normals differ by less than this sine, or point away from each other as nearly, are one boundary: the
+/// gradient from both would be that of small differences.
 const CORNER_SINE: f64 = 0.5;
 
 impl NodeFlux {
     /// What the conditions say of the gradient in coordinates stretched by `stretch`: at a corner all of it, otherwise
     /// its component along the normal.
     pub fn known(&self, stretch: [f64; 2]) -> KnownSlopes {
-        let sides = self.sides.iter().flatten();
-        if let [Some(a), Some(b)] = self.sides {
-            let sine = cross(a.normal, b.normal);
-            if sine.abs() > CORNER_SINE {
-                let (p, q) = (a.normal.map(|c| c * b.q / sine), b.normal.map(|c| c * a.q / sine));
-                let gradient = [q[1] - p[1], p[0] - q[0]];
-                return KnownSlopes { slopes: Slopes::Known, gradient: [0, 1].map(|d| gradient[d] / stretch[d]) };
-            }
+        let (a, b) = self.sides;
+        let sine = b.map_or(0.0, |b| cross(a.normal, b.normal));
+        if let Some(b) = b.filter(|_| sine.abs() > CORNER_SINE) {
+            let (p, q) = (a.normal.map(|c| c * b.q / sine), b.normal.map(|c| c * a.q / sine));
+            let gradient = [q[1] - p[1], p[0] - q[0]];
+            return KnownSlopes { slopes: Slopes::Known, gradient: [0, 1].map(|d| gradient[d] / stretch[d]) };
         }
+        // One normal for both: at a cusp the second is turned about, since they point away from each other.
+        let Side { normal, q } = b.map_or(a, |b| {
+            let sign = if dot(a.normal, b.normal) < 0.0 { -1.0 } else { 1.0 };
+            Side { normal: [0, 1].map(|d| a.normal[d] + sign * b.normal[d]), q: a.q + sign * b.q }
+        });
         // ∂/∂x = stretch_x·∂/∂X, so that n·∇u is a slope across in stretched coordinates too.
-        let across = [0, 1].map(|d| stretch[d] * sides.clone().map(|side| side.normal[d]).sum::<f64>());
-        let (q, square) = (sides.map(|side| side.q).sum::<f64>(), dot(across, across).max(f64::MIN_POSITIVE));
+        let across = [0, 1].map(|d| stretch[d] * normal[d]);
+        let square = dot(across, across);
         let along = [-across[1], across[0]].map(|c| c / square.sqrt());
         KnownSlopes { slopes: Slopes::Along(along), gradient: across.map(|c| c * q / square) }
     }
@@ -110,10 +113,12 @@ impl Fluxes {
             for (node, s) in [(segment.from, 0.0), (segment.to, 1.0)] {
                 if free.binary_search(&node).is_ok() {
                     let (at, tangent) = (cloud.xy()[node.index()], piece.direction(s));
-                    let own = at_nodes.entry(node).or_insert(NodeFlux { node, sides: [None; 2] });
                     // The material is on the left.
                     let side = Side { normal: [tangent[1], -tangent[0]], q: finite(flux, at)? };
-                    own.sides[usize::from(own.sides[0].is_some())] = Some(side);
+                    match at_nodes.entry(node) {
+                        Entry::Vacant(new) => drop(new.insert(NodeFlux { node, sides: (side, None) })),
+                        Entry::Occupied(mut known) => known.get_mut().sides.1 = Some(side),
+                    }
                 }
             }
         }

@@ -66,7 +66,8 @@ pub struct ErrorNorms {
 /// Dirichlet values are those at the nodes; a node between an edge with a value and one with a flux has the value. In the
 /// variational form fluxes are integrated over the true edges, and the weak form over the slivers between them and the
 /// polygon too; in the local form ∇²u = f holds at nodes with a flux as it does inside, and their polynomials meet
-/// n·∇u = q with the true normal \[D15\] (at a corner between two such edges both, at a smoother vertex their sum).
+/// n·∇u = q with the true normal \[D15\] (at a corner between two such edges both, at a smoother vertex their sum, at a cusp their
+/// difference).
 ///
 /// # Errors
 /// [`MfdmError`] where a datum is not finite, no edge has a value, or as for torsion ([`crate::solve`]).

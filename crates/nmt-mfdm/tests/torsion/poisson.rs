@@ -1,7 +1,7 @@
 //! Poisson problems with known solutions: patches, orders of convergence, fluxes on straight and curved edges and holes.
 
 use nmt_cloud::{CloudParams, Section, generate};
-use nmt_curve::Outline;
+use nmt_curve::{Curve, Outline, Turn};
 use nmt_mfdm::{Formulation, MfdmError, PoissonProblem, SolveParams, Test, Trial, solve_poisson};
 use nmt_tri::Mesh;
 
@@ -178,6 +178,38 @@ fn fluxes_on_all_sides_but_one_leave_the_local_form_accurate_on_every_irregular_
             assert!(found[1][1] < worst, "order {order}, seed {seed}: {found:?}");
             assert!(slope(&found) > least, "order {order}, seed {seed}: {found:?}");
         }
+    }
+}
+
+#[test]
+fn at_a_cusp_the_fluxes_of_both_sides_are_one_condition() {
+    // Two lobes that touch in (1, 0.4) with a common tangent, material on both sides of it: the outward normals there are
+    // opposite, and their sum is rounding.
+    let centres = [[1.68, 0.4], [0.32, 0.4]];
+    let mut contour = Outline::polygon([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 0.4], [0.0, 1.0]]);
+    for (k, centre) in centres.into_iter().enumerate() {
+        let [from, to] = [contour.vertices[2 + k], contour.vertices[3 + k]];
+        contour.edges[2 + k].curve = Curve::arc(centre, from, to, Turn::CounterClockwise);
+    }
+    let section = Section::solid(contour);
+    let flux = |centre: [f64; 2]| {
+        move |p: [f64; 2]| {
+            let (d, g) = ([p[0] - centre[0], p[1] - centre[1]], (QUADRATIC.gradient)(p));
+            (d[0] * g[0] + d[1] * g[1]) / d[0].hypot(d[1])
+        }
+    };
+    let [right, left] = centres.map(flux);
+    let problem = PoissonProblem {
+        source: &QUADRATIC.laplacian,
+        boundary: &QUADRATIC.u,
+        fluxes: vec![None, None, Some(&right), Some(&left), None],
+        section: &section,
+    };
+    for formulation in Formulation::MESHLESS {
+        let mesh = mesh(&section, 41, 0.25);
+        let solution = solve_poisson(&problem, &mesh, &params(formulation, 2)).expect("a solution");
+        let norms = solution.errors(&mesh, QUADRATIC.u);
+        assert!(norms.max < 1e-8 * norms.scale, "{formulation:?}: {:e}", norms.max); // arc lengths are good to 1e-9
     }
 }
 
