@@ -18,7 +18,7 @@ pub struct Traces {
 
 impl Traces {
     /// Removes them; what cannot be removed stays.
-    fn remove(&self) {
+    pub fn remove(&self) {
         let _ = std::fs::remove_dir_all(&self.unfinished);
         self.created.iter().rev().for_each(|directory| {
             let _ = std::fs::remove_dir(directory);

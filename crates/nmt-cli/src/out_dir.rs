@@ -33,17 +33,15 @@ impl OutDir {
         let is_missing = |ancestor: &&Path| !ancestor.as_os_str().is_empty() && !ancestor.exists();
         let mut created: Vec<PathBuf> = path.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         created.reverse();
-        let unfinished = fs::create_dir_all(path).and_then(|()| unfinished(path));
-        let traces = Traces { unfinished: unfinished.as_ref().cloned().unwrap_or_default(), created };
-        match unfinished {
-            Ok(_) => held.begin(traces.clone()),
+        let mut traces = Traces { unfinished: PathBuf::new(), created };
+        match fs::create_dir_all(path).and_then(|()| unfinished(path)) {
+            Ok(unfinished) => traces.unfinished = unfinished,
             Err(source) => {
-                traces.created.iter().rev().for_each(|directory| {
-                    let _ = fs::remove_dir(directory);
-                });
+                traces.remove();
                 return Err(failed(source));
             }
         }
+        held.begin(traces.clone());
         Ok(Self { path: path.into(), traces, names: Vec::new(), progress: progress.clone() })
     }
 

@@ -25,6 +25,11 @@ impl Section {
         std::iter::once(&self.contour).chain(&self.holes)
     }
 
+    /// Number of edges, those of the holes included.
+    pub fn n_edges(&self) -> usize {
+        self.loops().map(|outline| outline.edges.len()).sum()
+    }
+
     /// Name of every edge, by [`nmt_geom::EdgeId`]: those of the contour first, then of each hole.
     pub fn edge_names(&self) -> Vec<String> {
         self.loops().flat_map(|outline| outline.edges.iter().map(|edge| edge.name.clone())).collect()

@@ -212,9 +212,4 @@ impl Section {
     pub(crate) fn edge(&self, edge: EdgeId) -> Option<&OutlineEdge> {
         self.loops().flat_map(|outline| &outline.edges).nth(edge.index())
     }
-
-    /// Number of edges, those of the holes included.
-    pub(crate) fn n_edges(&self) -> usize {
-        self.loops().map(|outline| outline.edges.len()).sum()
-    }
 }

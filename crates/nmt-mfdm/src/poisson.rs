@@ -137,7 +137,7 @@ impl PoissonProblem<'_> {
     /// The condition at each boundary node.
     fn conditions(&self, mesh: &Mesh) -> Result<Vec<NodeCondition>, MfdmError> {
         let cloud = mesh.cloud();
-        let n_edges = self.section.loops().map(|outline| outline.edges.len()).sum();
+        let n_edges = self.section.n_edges();
         let found = cloud.boundary().segments().iter().map(|s| s.edge.index() + 1).max().unwrap_or(0);
         if found > n_edges || self.fluxes.len() > n_edges {
             return Err(MfdmError::Conditions { found, given: n_edges.max(self.fluxes.len()) });

@@ -144,8 +144,7 @@ impl Case {
             }
         };
         let all = [0, 1, 2, 3, 4].map(of_edge);
-        let n_edges = section.loops().map(|outline| outline.edges.len()).sum();
-        let fluxes = (0..n_edges)
+        let fluxes = (0..section.n_edges())
             .map(|edge| self.fluxes.contains(&edge).then_some(&all[edge] as &(dyn Fn(Point) -> f64 + Sync)))
             .collect();
         let problem = PoissonProblem { source: &self.laplacian, boundary: &self.u, fluxes, section: &section };
