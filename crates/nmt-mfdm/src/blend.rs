@@ -155,6 +155,11 @@ impl NodalPolynomials {
         self.order
     }
 
+    /// Whether the field is the linear interpolant of the nodal values ([`Self::linear`]).
+    pub fn is_linear_interpolant(&self) -> bool {
+        self.blended_order == 0
+    }
+
     /// What became of the stars.
     pub fn report(&self) -> StarReport {
         self.report

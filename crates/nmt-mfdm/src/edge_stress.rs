@@ -1,10 +1,10 @@
 //! τ along the true edges of a section, and its circulation around every loop: ∮τ·ds = 2GθA \[D12\].
 
 use crate::error::MfdmError;
-use crate::flux::{ALONG, Piece};
 use crate::post::Stress;
 use crate::problem::HoleCondition;
 use crate::solution::TorsionSolution;
+use crate::true_edges::{ALONG, Piece};
 use nmt_cloud::Section;
 use nmt_curve::{ArcTable, Curve};
 use nmt_geom::point::{cross, dot, sub};

@@ -2,11 +2,11 @@
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::error::MfdmError;
-use crate::flux::Fluxes;
 use crate::gauss::Rule;
 use crate::parallel::map_chunks;
 use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::system::{Equation, LinearSystem, Role, RowSum};
+use crate::true_edges::of_triangle;
 use crate::weak::places;
 use nmt_geom::{NodeId, TriId};
 
@@ -73,7 +73,7 @@ fn element(
     for (p, weight) in places(frame.mesh, rule, frame.fluxes, t) {
         sample(p, weight, weight * frame.source.at(p)?)?;
     }
-    for flux in Fluxes::of_triangle(&frame.fluxes.edges, t) {
+    for flux in of_triangle(&frame.fluxes.edges, t) {
         sample(flux.at, 0.0, flux.weight)?;
     }
     let mut nodes: Vec<NodeId> = samples.iter().flat_map(|sample| sample.shapes.nodes.iter().copied()).collect();

@@ -3,6 +3,7 @@
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
+use crate::true_edges::of_triangle;
 use crate::weak::places;
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::{Mesh, barycentric};
@@ -56,7 +57,7 @@ impl Source<'_> {
                     }
                 }
             }
-            for sample in Fluxes::of_triangle(&fluxes.edges, t) {
+            for sample in of_triangle(&fluxes.edges, t) {
                 sum += sample.weight * barycentric(corners, sample.at)[corner];
             }
         }

@@ -12,6 +12,7 @@ use crate::problem::Trial;
 use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::stencils::Stencils;
 use crate::system::RowSum;
+use crate::true_edges::of_triangle;
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, barycentric};
 
@@ -197,7 +198,7 @@ impl<'a> WeakForm<'a> {
             add(lambda, weight * area);
         }
         if !self.fluxes.slivers.is_empty() {
-            for sample in Fluxes::of_triangle(&self.fluxes.slivers, triangle) {
+            for sample in of_triangle(&self.fluxes.slivers, triangle) {
                 add(&barycentric(corners, sample.at), sample.weight);
             }
         }
@@ -216,5 +217,5 @@ pub(crate) fn places<'m>(
         let at = |d: usize| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>();
         ([at(0), at(1)], weight * area)
     });
-    own.chain(Fluxes::of_triangle(&fluxes.slivers, triangle).iter().map(|sample| (sample.at, sample.weight)))
+    own.chain(of_triangle(&fluxes.slivers, triangle).iter().map(|sample| (sample.at, sample.weight)))
 }

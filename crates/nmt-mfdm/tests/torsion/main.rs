@@ -3,6 +3,7 @@
 
 mod convergence;
 mod edges;
+mod estimate;
 mod holes;
 mod invariance;
 mod poisson;

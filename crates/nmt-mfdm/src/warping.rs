@@ -1,0 +1,93 @@
+//! The warping function: torsion by displacements, beside the stress function and independent of it.
+//!
+//! σ = −(r − r₀) + rot w, with rot w = (∂w/∂y, −∂w/∂x), has the divergence −2 of ∇F (Gθ = 1) and the circulation
+//! 2A around every hole, whatever w is. The w for which ∇²w = 0 and ∂w/∂n = x n_y − y n_x makes it ∇F. Its problem has fluxes on
+//! all edges and no constants of holes.
+
+use crate::blend::NodalPolynomials;
+use crate::boundary_value::{Discrete, solve_discrete};
+use crate::error::MfdmError;
+use crate::flux::Fluxes;
+use crate::params::SolveParams;
+use crate::problem::{Formulation, Test, Trial};
+use crate::solve::Event;
+use crate::solver::LinearSolve;
+use crate::source::Source;
+use crate::system::NodeCondition;
+use crate::true_edges::{Sample, visit_pieces};
+use nmt_cloud::Section;
+use nmt_geom::point::{cross, sub};
+use nmt_geom::{NodeId, Point, TriId};
+use nmt_tri::Mesh;
+
+/// The warping function of a section, made a field of stress.
+pub(crate) struct Warping {
+    field: NodalPolynomials,
+    /// r₀.
+    centre: Point,
+    /// How the linear system was solved.
+    pub linear: LinearSolve,
+}
+
+impl Warping {
+    /// Solves for w in the variational form, blends and hats, of the order of `params`, at least 2.
+    ///
+    /// w is known up to a constant: it is 0 at the first vertex.
+    ///
+    /// # Errors
+    /// As [`crate::solve`]; [`MfdmError::Curve`] where an edge has no length.
+    pub fn solve(
+        mesh: &Mesh,
+        section: &Section,
+        params: &SolveParams,
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<Self, MfdmError> {
+        let centre = mesh.centroid();
+        let mut fluxes = Fluxes::default();
+        visit_pieces(
+            mesh,
+            section,
+            |_| true,
+            |_, piece, triangle| {
+                for (s, at, ds) in piece.along() {
+                    let q = cross(sub(at, centre), piece.normal(s));
+                    fluxes.edges.push(Sample { triangle, at, weight: ds * q });
+                }
+                fluxes.slivers.extend(piece.sliver(triangle));
+                Ok(())
+            },
+        )?;
+        fluxes.edges.sort_by_key(|sample| sample.triangle);
+        fluxes.slivers.sort_by_key(|sample| sample.triangle);
+        let mut conditions = vec![NodeCondition::Flux; mesh.cloud().n_boundary()];
+        conditions[0] = NodeCondition::Value(0.0);
+        let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes };
+        let params = SolveParams {
+            formulation: Formulation::Variational,
+            order: params.order_used().max(2),
+            trial: Trial::Blended,
+            test: Test::Hat,
+            smoothing: 0.0,
+            star: None,
+            gauss: None,
+            ..*params
+        };
+        let solved = solve_discrete(discrete, &params, observer)?;
+        Ok(Self { field: solved.field, centre, linear: solved.linear })
+    }
+
+    /// σ at `p` in `triangle`.
+    pub fn stress_at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
+        self.with_rotation(p, self.field.blend(mesh, triangle, p).gradient)
+    }
+
+    /// σ at a node, of its own polynomial.
+    pub fn stress_at_node(&self, mesh: &Mesh, node: NodeId) -> [f64; 2] {
+        self.with_rotation(mesh.xy()[node.index()], self.field.at_node(node).gradient)
+    }
+
+    fn with_rotation(&self, p: Point, [w_x, w_y]: [f64; 2]) -> [f64; 2] {
+        let [x, y] = sub(p, self.centre);
+        [w_y - x, -w_x - y]
+    }
+}

@@ -1,0 +1,181 @@
+//! Error estimates against exact results: they cover the error, and not by much.
+
+use nmt_cloud::{CloudParams, Grading, Section, generate};
+use nmt_curve::Outline;
+use nmt_mfdm::{
+    ErrorEstimate, Formulation, HoleCondition, Load, SolveParams, TorsionProblem, TorsionSolution, estimate, exact,
+    solve,
+};
+use nmt_tri::Mesh;
+use std::error::Error;
+
+/// A section whose J, and τ_max where it is finite, are known.
+struct Known {
+    name: &'static str,
+    section: Section,
+    j: f64,
+    tau_max: Option<f64>,
+    grading: Option<Grading>,
+}
+
+fn known() -> Vec<Known> {
+    let (square, ring, ellipse) = (exact::rectangle(1.0, 1.0), exact::ring(0.5, 1.0), exact::ellipse(1.0, 0.5));
+    let l = Outline::polygon(vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]);
+    let triangle = Outline::polygon(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    let holed = Section {
+        contour: Outline::rectangle([-1.0, -1.0], [1.0, 1.0]),
+        holes: vec![Outline::circle([0.0, 0.0], 0.5)],
+    };
+    let tube = Section { contour: Outline::circle([0.0, 0.0], 1.0), holes: vec![Outline::circle([0.0, 0.0], 0.5)] };
+    let smooth = |name, section, j, tau_max| Known { name, section, j, tau_max: Some(tau_max), grading: None };
+    // J of the L, the triangle and the square with a hole: hp-FEM and rational least squares, agreeing to 1e-9.
+    let l_j = 0.856_303_210_746;
+    vec![
+        smooth("square", Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0])), square.j, square.tau_max),
+        smooth("ellipse", Section::solid(Outline::ellipse([0.0, 0.0], [1.0, 0.5], 0.3)), ellipse.j, ellipse.tau_max),
+        smooth("triangle", Section::solid(triangle), 0.026_089_651_711_5, 0.459_174_661_204),
+        smooth("square with hole", holed, 2.150_239_545_678, 1.353_393_153_296),
+        smooth("tube", tube, ring.j, ring.tau_max),
+        Known { name: "L", section: Section::solid(l.clone()), j: l_j, tau_max: None, grading: None },
+        Known {
+            name: "L, graded",
+            section: Section::solid(l),
+            j: l_j,
+            tau_max: None,
+            grading: Some(Grading::default().near([1.0, 1.0], 1e-5, 0.2)),
+        },
+    ]
+}
+
+struct Case {
+    solution: TorsionSolution,
+    estimate: ErrorEstimate,
+}
+
+fn case(
+    known: &Known,
+    params: &SolveParams,
+    nodes: usize,
+    irregularity: f64,
+    seed: u64,
+) -> Result<Case, Box<dyn Error>> {
+    let grading = known.grading.clone();
+    let cloud = CloudParams { nodes: [nodes, nodes], irregularity, seed, grading, ..CloudParams::default() };
+    let mesh = Mesh::constrained(generate(&known.section, &cloud)?)?;
+    let problem = TorsionProblem::default();
+    let solution = solve(&problem, &mesh, params)?;
+    let estimate = estimate(&problem, &mesh, &known.section, params, &solution)?.ok_or("no hole has F = 0")?;
+    Ok(Case { solution, estimate })
+}
+
+#[test]
+fn estimates_cover_the_errors_and_not_by_much() -> Result<(), Box<dyn Error>> {
+    let variational = |order| SolveParams { order, ..SolveParams::default() };
+    let local = |order| SolveParams { formulation: Formulation::Local, ..variational(order) };
+    let fem = SolveParams { formulation: Formulation::Fem, ..SolveParams::default() };
+    let (mut of_j, mut of_tau) = (Vec::new(), Vec::new());
+    for known in known() {
+        for params in [variational(1), variational(2), variational(4), local(2), local(4), fem] {
+            for (irregularity, seed) in [(0.0, 1), (0.25, 1), (0.25, 2), (0.4, 3)] {
+                let Case { solution, estimate } = case(&known, &params, 25, irregularity, seed)?;
+                let label = format!(
+                    "{}, {} {}, irregularity {irregularity}, seed {seed}",
+                    known.name,
+                    params.formulation.name(),
+                    params.order
+                );
+                let error = (solution.j - known.j).abs();
+                // 1 measured at least; the reference itself has twelve digits.
+                assert!(error <= 1.5 * estimate.j + 1e-11 * known.j, "{label}: J {error:e} against {:e}", estimate.j);
+                // Coarse singular corners: the product of the errors of v and σ on the boundary enters.
+                let [low, high] = estimate.j_bounds;
+                let slack = 0.1 * (high - low) + 1e-11 * known.j;
+                assert!(low - slack < known.j && known.j < high + slack, "{label}: {low} … {high}");
+                if error > 1e-11 * known.j {
+                    of_j.push(estimate.j / error);
+                }
+                if let Some(tau_max) = known.tau_max {
+                    let error = (solution.tau_max.value - tau_max).abs();
+                    // 0.84 measured at least.
+                    assert!(error <= 2.0 * estimate.tau_max + 1e-11, "{label}: τ {error:e}, {:e}", estimate.tau_max);
+                    if error > 1e-11 {
+                        of_tau.push(estimate.tau_max / error);
+                    }
+                }
+            }
+        }
+    }
+    for ratios in [&mut of_j, &mut of_tau] {
+        ratios.sort_by(f64::total_cmp);
+        assert!(ratios.len() > 60);
+        assert!(ratios[ratios.len() / 2] < 5.0, "median {}", ratios[ratios.len() / 2]); // 1.2 and 2 measured
+    }
+    Ok(())
+}
+
+/// The middle of the bounds gains a digit and more on 2∫F.
+#[test]
+fn the_middle_of_the_bounds_is_nearer() -> Result<(), Box<dyn Error>> {
+    let known = known();
+    let graded = known.iter().find(|known| known.grading.is_some()).ok_or("a graded section")?;
+    let Case { solution, estimate } = case(graded, &SolveParams::default(), 41, 0.0, 1)?;
+    let [low, high] = estimate.j_bounds;
+    let (middle, found) = ((0.5 * (low + high) - graded.j).abs(), (solution.j - graded.j).abs());
+    assert!(middle < 0.1 * found, "{middle:e} against {found:e}"); // 1e-7 against 1.1e-5 of J measured
+    Ok(())
+}
+
+/// Indicators sum to no less than the distance of the bounds, and are largest at a re-entrant corner.
+#[test]
+fn indicators_point_at_the_corner() -> Result<(), Box<dyn Error>> {
+    let known = known();
+    let l = known.iter().find(|known| known.name == "L").ok_or("the L")?;
+    let cloud = CloudParams { nodes: [25, 25], ..CloudParams::default() };
+    let mesh = Mesh::constrained(generate(&l.section, &cloud)?)?;
+    let (problem, params) = (TorsionProblem::default(), SolveParams::default());
+    let solution = solve(&problem, &mesh, &params)?;
+    let estimate = estimate(&problem, &mesh, &l.section, &params, &solution)?.ok_or("no hole")?;
+    let [low, high] = estimate.j_bounds;
+    assert!(estimate.indicators.len() == mesh.n_triangles());
+    assert!((estimate.indicators.iter().sum::<f64>() / (high - low) - 1.0).abs() < 1e-12); // rounding
+    let largest =
+        mesh.triangles().max_by(|a, b| estimate.indicators[a.index()].total_cmp(&estimate.indicators[b.index()]));
+    let corners = mesh.corners(largest.ok_or("a triangle")?);
+    assert!(corners.iter().any(|p| (p[0] - 1.0).hypot(p[1] - 1.0) < 0.1), "{corners:?}");
+    Ok(())
+}
+
+#[test]
+fn estimates_follow_the_load() -> Result<(), Box<dyn Error>> {
+    let section = Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0]));
+    let cloud = CloudParams { nodes: [15, 15], irregularity: 0.2, ..CloudParams::default() };
+    let mesh = Mesh::constrained(generate(&section, &cloud)?)?;
+    let params = SolveParams::default();
+    let of = |load| -> Result<(TorsionSolution, ErrorEstimate), Box<dyn Error>> {
+        let problem = TorsionProblem { shear_modulus: 3.0, load, ..TorsionProblem::default() };
+        let solution = solve(&problem, &mesh, &params)?;
+        let estimate = estimate(&problem, &mesh, &section, &params, &solution)?.ok_or("no hole")?;
+        Ok((solution, estimate))
+    };
+    let (by_twist, of_twist) = of(Load::Twist(-2.0))?;
+    let (by_torque, of_torque) = of(Load::Torque(5.0))?;
+    let relative = of_twist.relative(by_twist.j);
+    let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9; // two solutions of one system
+    assert!(close(of_torque.relative(by_torque.j), relative));
+    assert!(close(of_twist.torque, relative * by_twist.torque.abs()) && of_twist.twist == 0.0);
+    assert!(close(of_torque.twist, relative * by_torque.twist) && of_torque.torque == 0.0);
+    // A given torque carries the error of the twist into τ.
+    let [a, b] = [(&of_twist, &by_twist), (&of_torque, &by_torque)].map(|(e, s)| e.tau_max / s.tau_max.value);
+    assert!(close(b, a + relative));
+    Ok(())
+}
+
+#[test]
+fn no_bounds_where_holes_have_no_circulation() -> Result<(), Box<dyn Error>> {
+    let tube = Section { contour: Outline::circle([0.0, 0.0], 1.0), holes: vec![Outline::circle([0.0, 0.0], 0.5)] };
+    let mesh = Mesh::constrained(generate(&tube, &CloudParams { nodes: [15, 15], ..CloudParams::default() })?)?;
+    let problem = TorsionProblem { holes: HoleCondition::Zero, ..TorsionProblem::default() };
+    let solution = solve(&problem, &mesh, &SolveParams::default())?;
+    assert_eq!(estimate(&problem, &mesh, &tube, &SolveParams::default(), &solution)?, None);
+    Ok(())
+}
