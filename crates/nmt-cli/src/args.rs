@@ -158,6 +158,15 @@ pub struct SolveArgs {
     pub keys: SolveKeys,
     #[command(flatten)]
     pub mesh: MeshKeys,
+    /// Do not estimate the errors of torsion, which takes about as long as the solution
+    #[arg(long)]
+    pub no_estimate: bool,
+    /// Refine the clouds until the estimated error of J is at most this fraction of it; without, clouds are as given
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    pub tolerance: Option<f64>,
+    /// Most nodes of a subdomain on the way to the tolerance; 1000000 by default
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub max_nodes: Option<i64>,
     /// Directory for the files (created if need be)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -212,6 +221,18 @@ pub struct StarArgs {
     /// Directory for star-N.svg and star-N.png (created if need be)
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub out: PathBuf,
+}
+
+impl SolveArgs {
+    /// What the options change of the file.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            estimate: self.no_estimate.then_some(false),
+            tolerance: self.tolerance,
+            max_nodes: self.max_nodes,
+            ..self.problem.overrides_with(&self.keys, &self.mesh)
+        }
+    }
 }
 
 impl ProblemArgs {

@@ -20,7 +20,7 @@ use crate::files::{print, read_problem};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::timing::Stopwatch;
-use nmt::pipeline::Event;
+use nmt::pipeline::{Event, Step};
 use nmt::problem::{Overrides, Problem, Source};
 use nmt::report::{Report, text};
 use std::path::Path;
@@ -41,6 +41,10 @@ fn observer<'a>(
         watch.observe(k, event);
         let name = problem.subdomains.get(k).filter(|_| several);
         progress.observe(name.map(|subdomain| subdomain.name.as_str()), event);
+        if let Event::Step(Step { nodes, j, error }) = event {
+            let of = name.map_or(String::new(), |subdomain| format!("\"{}\": ", subdomain.name));
+            progress.note(&format!("{of}{nodes} nodes, J = {j:.9}, estimated error {error:.1e}"));
+        }
     }
 }
 

@@ -41,6 +41,21 @@ pub enum Failure {
         /// Of how many.
         of: usize,
     },
+    /// A tolerance is not reached; the best solution has been written.
+    #[error(
+        "subdomain \"{subdomain}\": the tolerance {asked:e} is not reached: the best of its solutions, on {nodes} nodes, has an \
+         estimated error of {reached:.1e}; allow more (--max-nodes), give a larger tolerance, or order = 4"
+    )]
+    Tolerance {
+        /// Its name.
+        subdomain: String,
+        /// The relative error of J asked for.
+        asked: f64,
+        /// What it has come to.
+        reached: f64,
+        /// Nodes of the last cloud.
+        nodes: usize,
+    },
     /// An option does not suit the problem.
     #[error("{0}")]
     Option(String),
@@ -85,7 +100,7 @@ impl Failure {
         match self {
             Self::Problem { .. } | Self::NotText { .. } => 1,
             Self::Option(_) => USAGE,
-            Self::Numerics(_) | Self::Methods { .. } | Self::Json(_) => 3,
+            Self::Numerics(_) | Self::Methods { .. } | Self::Tolerance { .. } | Self::Json(_) => 3,
             Self::Io { .. } | Self::Picture { .. } => 4,
         }
     }

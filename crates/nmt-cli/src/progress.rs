@@ -54,7 +54,7 @@ impl Progress {
                 Some(name) => format!("{} of \"{name}\"", words(stage)),
                 None => words(stage).into(),
             }),
-            Event::Ended(_) => {}
+            Event::Ended(_) | Event::Step(_) => {}
             Event::Nodes { done, of } => shown.measure(done as u64, of as u64, format!("{done} of {of} nodes")),
             Event::Iteration { iterations, residual, target } => {
                 // Residuals fall by a factor each time.
@@ -62,6 +62,14 @@ impl Progress {
                 let message = format!("iteration {iterations}, residual {residual:.1e}");
                 shown.measure((share * STEPS as f64) as u64, STEPS, message);
             }
+        }
+    }
+
+    /// A line on stderr, above the bar where there is one.
+    pub fn note(&self, line: &str) {
+        match &self.0 {
+            Some(shown) => shown.bar.suspend(|| eprintln!("{line}")),
+            None => eprintln!("{line}"),
         }
     }
 
@@ -129,5 +137,6 @@ fn words(stage: Stage) -> &'static str {
         Stage::Assemble => "equations",
         Stage::Solve => "linear solver",
         Stage::Post => "recovery and results",
+        Stage::Estimate => "error estimate",
     }
 }

@@ -9,13 +9,14 @@ pub struct Stopwatch {
     start: Instant,
     last: Instant,
     laps: Vec<(usize, Stage, f64)>,
+    steps: Vec<(usize, usize)>, // subdomain, and how many laps there were at the end of its step
 }
 
 impl Stopwatch {
     /// Starts now.
     pub fn start() -> Self {
         let now = Instant::now();
-        Self { start: now, last: now, laps: Vec::new() }
+        Self { start: now, last: now, laps: Vec::new(), steps: Vec::new() }
     }
 
     /// Seconds since the start.
@@ -25,6 +26,9 @@ impl Stopwatch {
 
     /// What happens in a subdomain happens now.
     pub fn observe(&mut self, subdomain: usize, event: Event) {
+        if let Event::Step(_) = event {
+            self.steps.push((subdomain, self.laps.len()));
+        }
         let Event::Ended(stage) = event else { return };
         let now = Instant::now();
         self.laps.push((subdomain, stage, (now - self.last).as_secs_f64()));
@@ -34,7 +38,9 @@ impl Stopwatch {
     /// Fills in the seconds and the peak memory of a report.
     pub fn fill(&self, report: &mut Report) {
         for (k, subdomain) in report.subdomains.iter_mut().enumerate() {
-            let of = |stage: Stage| self.laps.iter().find(|lap| lap.0 == k && lap.1 == stage).map(|lap| lap.2);
+            // On the way to a tolerance a stage has several laps.
+            let own = |stage: Stage| self.laps.iter().filter(move |lap| lap.0 == k && lap.1 == stage);
+            let of = |stage: Stage| own(stage).next().map(|_| own(stage).map(|lap| lap.2).sum::<f64>());
             subdomain.seconds = Seconds {
                 cloud: of(Stage::Cloud).unwrap_or(0.0),
                 mesh: of(Stage::Mesh),
@@ -42,7 +48,14 @@ impl Stopwatch {
                 assemble: of(Stage::Assemble),
                 solve: of(Stage::Solve),
                 post: of(Stage::Post),
+                estimate: of(Stage::Estimate),
             };
+            let steps = subdomain.solution.as_mut().and_then(|solution| solution.tolerance.as_mut());
+            let ends = self.steps.iter().filter(|step| step.0 == k).map(|step| step.1);
+            let begins = std::iter::once(0).chain(ends.clone());
+            for ((step, begin), end) in steps.into_iter().flat_map(|t| &mut t.steps).zip(begins).zip(ends) {
+                step.seconds = self.laps[begin..end].iter().filter(|lap| lap.0 == k).map(|lap| lap.2).sum();
+            }
         }
         report.totals.seconds = self.start.elapsed().as_secs_f64();
         report.totals.peak_rss_mb = peak_rss_mb();

@@ -4,7 +4,7 @@ use crate::edges::{EdgeTable, loop_name};
 use crate::pipeline::{MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::plot::{
     Caption, EdgeProfile, Fields, NodeMark, Part, PoissonFields, Profiles, StarFigure, StarNode, edges_figure,
-    histogram_figure, mesh_figure, nodes_figure, poisson_figure, solution_figure, star_figure,
+    histogram_figure, indicator_figure, mesh_figure, nodes_figure, poisson_figure, solution_figure, star_figure,
 };
 use crate::problem::Problem;
 use crate::star::StarView;
@@ -134,6 +134,31 @@ pub fn solution_svg(problem: &Problem, parts: &[SolvedPart]) -> String {
         })
         .collect();
     solution_figure(&caption(problem), &figures)
+}
+
+/// error.svg: where the errors of J come from, as log₁₀ of what the triangles around a node contribute to the relative error of J,
+/// over their share of the area; `None` where no error is estimated.
+pub fn error_svg(problem: &Problem, parts: &[SolvedPart]) -> Option<String> {
+    let drawn: Vec<(Drawn, Vec<f64>)> =
+        parts.iter().filter_map(|s| Some((Drawn::of_mesh(&s.part.name, &s.part.mesh), error_density(s)?))).collect();
+    let figures: Vec<(Part, &[f64])> = drawn.iter().map(|(drawn, values)| (drawn.part(), values.as_slice())).collect();
+    (!figures.is_empty()).then(|| indicator_figure(&caption(problem), &figures))
+}
+
+/// log₁₀ of the density of the relative error of J at nodes.
+fn error_density(solved: &SolvedPart) -> Option<Vec<f64>> {
+    let (estimate, mesh) = (solved.estimate.made()?, &solved.part.mesh);
+    let mut sums = vec![[0.0; 2]; mesh.cloud().n_nodes()];
+    for (t, own) in mesh.triangles().zip(&estimate.indicators) {
+        for node in mesh.tri_nodes()[t.index()] {
+            sums[node.index()][0] += own;
+            sums[node.index()][1] += mesh.area(t);
+        }
+    }
+    let scale = mesh.total_area() / solved.solution.j.abs();
+    // What is rounding is drawn as that, not as an abyss.
+    let log = |[own, area]: [f64; 2]| (scale * own / area).max(f64::EPSILON * f64::EPSILON).log10();
+    Some(sums.into_iter().map(log).collect())
 }
 
 /// edges.svg: τ along the edges of every subdomain.

@@ -3,8 +3,12 @@
 //! problem file → clouds → meshes → solutions. Each function takes what the one before gave; [`solve_problem`] calls
 //! them all.
 
+mod adapt;
+mod estimate;
 mod poisson;
 
+pub use adapt::{Step, to_tolerance};
+pub use estimate::Estimated;
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
 pub(crate) use poisson::{poisson_on, solve_on};
 
@@ -12,7 +16,7 @@ use crate::error::NmtError;
 use crate::problem::GradingSettings;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use crate::report::place;
-use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Section, SpacingFunction, generate};
+use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Refinement, Section, SpacingFunction, generate};
 use nmt_merge::{EdgeNodes, Planned, conform};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
@@ -32,6 +36,8 @@ pub enum Stage {
     Solve,
     /// Recovery and results.
     Post,
+    /// How far the results may be off.
+    Estimate,
 }
 
 /// What an observer is told, so that whoever calls holds the clock and shows how far it is.
@@ -57,6 +63,8 @@ pub enum Event {
         /// The residual that it goes on to.
         target: f64,
     },
+    /// One more solution on the way to a tolerance.
+    Step(Step),
 }
 
 /// Told the subdomain (by its number) and what has happened there.
@@ -116,6 +124,10 @@ pub struct SolvedPart {
     pub params: SolveParams,
     /// The solution.
     pub solution: TorsionSolution,
+    /// How far it may be off.
+    pub estimate: Estimated,
+    /// The solutions on the way to a tolerance, this one the best of them; empty where the problem has no tolerance.
+    pub history: Vec<Step>,
 }
 
 /// All subdomains solved: what the problem file asks for.
@@ -142,14 +154,35 @@ impl Solved {
 /// # Errors
 /// Every subdomain's fault that shows only when nodes are placed, with its place in the file.
 pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPart>, NmtError> {
+    let finer = Finer::none(problem);
+    clouds_of(problem, &finer, &vec![true; problem.subdomains.len()], observer)
+}
+
+/// Refinements beyond those of the file, by subdomain.
+#[derive(Clone, Debug)]
+pub(crate) struct Finer(pub Vec<Vec<Refinement>>);
+
+impl Finer {
+    fn none(problem: &Problem) -> Self {
+        Self(vec![Vec::new(); problem.subdomains.len()])
+    }
+}
+
+/// Clouds of the subdomains that are `wanted`, refined beyond the file.
+fn clouds_of(
+    problem: &Problem,
+    finer: &Finer,
+    wanted: &[bool],
+    observer: &mut Observer,
+) -> Result<Vec<CloudPart>, NmtError> {
     let mut parts = Vec::with_capacity(problem.subdomains.len());
     let mut faults = Vec::new();
-    let shared = shared_nodes(problem);
-    for (k, subdomain) in problem.subdomains.iter().enumerate() {
+    let shared = shared_nodes(problem, finer);
+    for (k, subdomain) in problem.subdomains.iter().enumerate().filter(|(k, _)| wanted[*k]) {
         observer(k, Event::Begun(Stage::Cloud));
         let section = section(subdomain);
         let edge_nodes = shared.get(k).cloned().unwrap_or_default();
-        match generate(&section, &CloudParams { edge_nodes, ..cloud_params(problem, subdomain) }) {
+        match generate(&section, &CloudParams { edge_nodes, ..refined_params(problem, finer, k) }) {
             Ok(cloud) => parts.push(CloudPart {
                 name: subdomain.name.clone(),
                 edge_names: section.edge_names(),
@@ -165,13 +198,22 @@ pub fn clouds(problem: &Problem, observer: &mut Observer) -> Result<Vec<CloudPar
     if faults.is_empty() { Ok(parts) } else { Err(NmtError::Problem(faults)) }
 }
 
+/// How the cloud of subdomain `k` is made, refined beyond the file.
+fn refined_params(problem: &Problem, finer: &Finer, k: usize) -> CloudParams {
+    let mut params = cloud_params(problem, &problem.subdomains[k]);
+    if !finer.0[k].is_empty() {
+        params.grading.get_or_insert_default().refinements.extend(&finer.0[k]);
+    }
+    params
+}
+
 /// Nodes that both sides of the common edges of conforming subdomains have; empty where there are none.
-fn shared_nodes(problem: &Problem) -> Vec<EdgeNodes> {
+fn shared_nodes(problem: &Problem, finer: &Finer) -> Vec<EdgeNodes> {
     if problem.subdomains.len() < 2 || !problem.subdomains.iter().any(|subdomain| subdomain.conforming) {
         return Vec::new();
     }
     let sections: Vec<Section> = problem.subdomains.iter().map(section).collect();
-    let params: Vec<CloudParams> = problem.subdomains.iter().map(|s| cloud_params(problem, s)).collect();
+    let params: Vec<CloudParams> = (0..sections.len()).map(|k| refined_params(problem, finer, k)).collect();
     let planned = |(k, subdomain): (usize, &Subdomain)| Planned {
         section: &sections[k],
         params: &params[k],
@@ -272,28 +314,30 @@ fn star_fault(problem: &Problem, subdomain: &Subdomain, parts: &[CloudPart]) -> 
 /// # Errors
 /// [`NmtError::Mesh`] where a cloud cannot be triangulated.
 pub fn meshes(problem: &Problem, clouds: Vec<CloudPart>, observer: &mut Observer) -> Result<Vec<MeshPart>, NmtError> {
+    clouds.into_iter().enumerate().map(|(k, part)| mesh_of(problem, k, part, observer)).collect()
+}
+
+/// The mesh of subdomain `k`.
+fn mesh_of(problem: &Problem, k: usize, part: CloudPart, observer: &mut Observer) -> Result<MeshPart, NmtError> {
     let MeshSettings { method, elimination, smooth: sweeps, .. } = &problem.mesh;
-    let mesh = |(k, part): (usize, CloudPart)| {
-        let CloudPart { name, edge_names, hole_names, section, cloud } = part;
-        let failed = |source| NmtError::Mesh { subdomain: name.clone(), source };
-        let triangulate = |cloud: Cloud| match method {
-            MeshMethod::Constrained => Mesh::constrained(cloud).map(|mesh| {
-                let census = MeshCensus { delaunay: mesh.n_triangles(), ..MeshCensus::default() };
-                (mesh, census)
-            }),
-            MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
-        };
-        observer(k, Event::Begun(Stage::Mesh));
-        let (mut mesh, mut census) = triangulate(cloud).map_err(failed)?;
-        let before = (*sweeps > 0).then(|| quality(&mesh)).flatten();
-        if before.is_some() {
-            (mesh, census) = triangulate(smooth(&mesh, *sweeps)).map_err(failed)?;
-        }
-        let smoothing = before.map(|before| Smoothing { sweeps: *sweeps, before });
-        observer(k, Event::Ended(Stage::Mesh));
-        Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census, smoothing })
+    let CloudPart { name, edge_names, hole_names, section, cloud } = part;
+    let failed = |source| NmtError::Mesh { subdomain: name.clone(), source };
+    let triangulate = |cloud: Cloud| match method {
+        MeshMethod::Constrained => Mesh::constrained(cloud).map(|mesh| {
+            let census = MeshCensus { delaunay: mesh.n_triangles(), ..MeshCensus::default() };
+            (mesh, census)
+        }),
+        MeshMethod::Unconstrained => Mesh::unconstrained(cloud, elimination),
     };
-    clouds.into_iter().enumerate().map(mesh).collect()
+    observer(k, Event::Begun(Stage::Mesh));
+    let (mut mesh, mut census) = triangulate(cloud).map_err(failed)?;
+    let before = (*sweeps > 0).then(|| quality(&mesh)).flatten();
+    if before.is_some() {
+        (mesh, census) = triangulate(smooth(&mesh, *sweeps)).map_err(failed)?;
+    }
+    let smoothing = before.map(|before| Smoothing { sweeps: *sweeps, before });
+    observer(k, Event::Ended(Stage::Mesh));
+    Ok(MeshPart { name, edge_names, hole_names, section, mesh, method: *method, census, smoothing })
 }
 
 /// Solutions of all subdomains, of torsion or of a Poisson problem, as the file has it.
@@ -323,15 +367,18 @@ pub fn solutions(
     if let Some(fault) = meshes.iter().find_map(|part| elimination_fault(problem, part)) {
         return Err(NmtError::Problem(vec![fault]));
     }
-    let solve = |(k, part): (usize, MeshPart)| {
-        let subdomain = &problem.subdomains[k];
-        let params = problem.solve.params(subdomain.formulation);
-        let torsion = torsion(problem, subdomain);
-        let solution = solve_observed(&torsion, &part.mesh, &params, &mut of_solution(k, observer))
-            .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
-        Ok(SolvedPart { part, params, solution })
-    };
-    meshes.into_iter().enumerate().map(solve).collect()
+    meshes.into_iter().enumerate().map(|(k, part)| solution_of(problem, k, part, observer)).collect()
+}
+
+/// The solution of torsion in subdomain `k`.
+fn solution_of(problem: &Problem, k: usize, part: MeshPart, observer: &mut Observer) -> Result<SolvedPart, NmtError> {
+    let subdomain = &problem.subdomains[k];
+    let params = problem.solve.params(subdomain.formulation);
+    let torsion = torsion(problem, subdomain);
+    let solution = solve_observed(&torsion, &part.mesh, &params, &mut of_solution(k, observer))
+        .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
+    let estimate = estimate::of_solution((k, problem), (&part, &params), &solution, observer);
+    Ok(SolvedPart { part, params, solution, estimate, history: Vec::new() })
 }
 
 /// The torsion problem of a subdomain.
@@ -387,12 +434,15 @@ impl From<nmt_mfdm::Stage> for Stage {
     }
 }
 
-/// From a checked problem of torsion to the solutions of its subdomains.
+/// From a checked problem of torsion to the solutions of its subdomains; where it has a tolerance, by [`to_tolerance`].
 ///
 /// # Errors
 /// [`NmtError`] of the first stage that fails.
 pub fn solve_problem(problem: &Problem) -> Result<Vec<SolvedPart>, NmtError> {
     let observer: &mut Observer = &mut |_, _| {};
+    if let Some(tolerance) = problem.solve.tolerance {
+        return to_tolerance(problem, tolerance, observer);
+    }
     let clouds = clouds(problem, observer)?;
     let meshes = meshes(problem, clouds, observer)?;
     solutions(problem, meshes, observer)
@@ -403,7 +453,17 @@ pub fn solve_problem(problem: &Problem) -> Result<Vec<SolvedPart>, NmtError> {
 /// # Errors
 /// [`NmtError`] of the first stage that fails.
 pub fn solve_any(problem: &Problem) -> Result<Solved, NmtError> {
-    let observer: &mut Observer = &mut |_, _| {};
+    solve_any_observed(problem, &mut |_, _| {})
+}
+
+/// [`solve_any`], telling `observer` how far it is.
+///
+/// # Errors
+/// As [`solve_any`].
+pub fn solve_any_observed(problem: &Problem, observer: &mut Observer) -> Result<Solved, NmtError> {
+    if let Some(tolerance) = problem.solve.tolerance {
+        return to_tolerance(problem, tolerance, observer).map(Solved::Torsion);
+    }
     let clouds = clouds(problem, observer)?;
     let meshes = meshes(problem, clouds, observer)?;
     solved(problem, meshes, observer)

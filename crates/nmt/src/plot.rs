@@ -196,6 +196,12 @@ pub fn solution_figure(caption: &Caption<'_>, parts: &[(Part<'_>, Fields<'_>)]) 
     svg::render(&solution::scene(caption, &solution::TORSION, &fields, size))
 }
 
+/// SVG text of where the error of J comes from: the logarithm of its density at nodes, one slice a part.
+pub fn indicator_figure(caption: &Caption<'_>, parts: &[(Part<'_>, &[f64])]) -> String {
+    let fields: Vec<_> = parts.iter().map(|(part, values)| (*part, [*values])).collect();
+    svg::render(&solution::scene(caption, &solution::INDICATOR, &fields, |_| 0.0))
+}
+
 /// SVG text of the solution of a Poisson problem: `u`, its derivatives, and its error, where all parts have one, otherwise
 /// the magnitude of its gradient; as [`solution_figure`].
 pub fn poisson_figure(caption: &Caption<'_>, parts: &[(Part<'_>, PoissonFields<'_>)]) -> String {

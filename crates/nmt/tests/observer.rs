@@ -19,14 +19,15 @@ fn events(solve: &str) -> Vec<(usize, Event)> {
 
 #[test]
 fn every_stage_begins_and_ends_once_and_tells_what_it_does_in_between() {
-    for solve in ["", "source = \"1\""] {
+    for (solve, estimates) in [("", true), ("estimate = false", false), ("source = \"1\"", false)] {
         let told = events(solve);
         let bounds: Vec<(usize, Event)> =
             told.iter().copied().filter(|(_, event)| matches!(event, Event::Begun(_) | Event::Ended(_))).collect();
         let stages = |k: usize, stages: &[Stage]| {
             stages.iter().flat_map(|stage| [(k, Event::Begun(*stage)), (k, Event::Ended(*stage))]).collect::<Vec<_>>()
         };
-        let solution = [Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Post];
+        let mut solution = vec![Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Post];
+        solution.extend(estimates.then_some(Stage::Estimate));
         let expected = [
             stages(0, &[Stage::Cloud]),
             stages(1, &[Stage::Cloud]),
@@ -38,11 +39,12 @@ fn every_stage_begins_and_ends_once_and_tells_what_it_does_in_between() {
         .concat();
         assert_eq!(bounds, expected);
 
-        // Stars, then recovery, each up to all nodes.
+        // Stars, then recovery, each up to all nodes; of the warping function too.
         let full = told.iter().filter(|(k, e)| *k == 0 && *e == Event::Nodes { done: 1681, of: 1681 }).count();
-        assert_eq!(full, 2);
+        assert_eq!(full, if estimates { 4 } else { 2 });
         let residuals: Vec<f64> = told
             .iter()
+            .take_while(|(_, event)| *event != Event::Ended(Stage::Solve))
             .filter_map(|(k, event)| match event {
                 Event::Iteration { residual, target, .. } if *k == 0 => Some(residual / target),
                 _ => None,

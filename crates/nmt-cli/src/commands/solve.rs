@@ -5,21 +5,18 @@ use crate::args::SolveArgs;
 use crate::exit::Failure;
 use crate::progress::Progress;
 use crate::timing::Stopwatch;
-use nmt::figures::{edges_svg, mesh_svg, nodes_svg, solved_svg};
+use nmt::figures::{edges_svg, error_svg, mesh_svg, nodes_svg, solved_svg};
 use nmt::io::{NodeFields, csv_of_edges, csv_of_solutions, msh_of_solutions, stars_json, vtu_of_solutions};
-use nmt::pipeline::{Solved, clouds, meshes, solved};
+use nmt::pipeline::{Solved, SolvedPart, Step, solve_any_observed};
 use nmt::report::Report;
 
 /// Runs the command.
 pub fn solve(args: &SolveArgs, progress: &Progress) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
-    let problem = load(&args.problem, &args.problem.overrides_with(&args.keys, &args.mesh))?;
+    let problem = load(&args.problem, &args.overrides())?;
     let mut out = out_dir(args.out.as_deref(), progress)?;
     let mut observer = observer(&problem, &mut watch, progress);
-    let solved = clouds(&problem, &mut observer)
-        .and_then(|clouds| meshes(&problem, clouds, &mut observer))
-        .and_then(|meshes| solved(&problem, meshes, &mut observer))
-        .map_err(|e| Failure::of(e, &problem.source))?;
+    let solved = solve_any_observed(&problem, &mut observer).map_err(|e| Failure::of(e, &problem.source))?;
     drop(observer);
     if let Some(out) = &mut out {
         let fields = NodeFields::of(&solved);
@@ -34,7 +31,27 @@ pub fn solve(args: &SolveArgs, progress: &Progress) -> Result<(), Failure> {
         if let Solved::Torsion(parts) = &solved {
             out.write("edges.csv", csv_of_edges(parts))?;
             out.write_picture("edges", || edges_svg(&problem, parts))?;
+            if let Some(error) = error_svg(&problem, parts) {
+                out.write_picture("error", || error)?;
+            }
         }
     }
-    finish(Report::of_solved(&problem, &solved, &args.at), (&watch, progress), args.problem.json, out)
+    finish(Report::of_solved(&problem, &solved, &args.at), (&watch, progress), args.problem.json, out)?;
+    match (problem.solve.tolerance, &solved) {
+        (Some(tolerance), Solved::Torsion(parts)) => met(tolerance, parts),
+        _ => Ok(()),
+    }
+}
+
+/// Fails where a subdomain does not meet the tolerance; its results are written all the same.
+fn met(tolerance: f64, parts: &[SolvedPart]) -> Result<(), Failure> {
+    let missed = parts.iter().map(|part| (part, Step::of(part))).find(|(_, step)| step.error > tolerance);
+    missed.map_or(Ok(()), |(part, step)| {
+        Err(Failure::Tolerance {
+            subdomain: part.part.name.clone(),
+            asked: tolerance,
+            reached: step.error,
+            nodes: step.nodes,
+        })
+    })
 }

@@ -13,6 +13,8 @@ pub struct NodeFields<'a> {
     pub(crate) at_nodes: Vec<(&'static str, Vec<f64>)>,
     /// Residual of the differential equation at centroids, shape (n_triangles,).
     pub(crate) residual: Vec<f64>,
+    /// What each triangle contributes to the error estimate, shape (n_triangles,).
+    pub(crate) error_indicator: Option<Vec<f64>>,
     /// The star of each node in the equations; empty for finite elements.
     pub(crate) stars: Vec<StarDiagnostics>,
 }
@@ -20,7 +22,7 @@ pub struct NodeFields<'a> {
 impl<'a> NodeFields<'a> {
     /// Of torsion: `F, tau_zx, tau_zy, tau`, τ from the node's own polynomial, and |∇²F + 2Gθ|.
     pub fn of_torsion(solved: &'a SolvedPart) -> Self {
-        let SolvedPart { part, solution, .. } = solved;
+        let SolvedPart { part, solution, estimate, .. } = solved;
         let nodes = (0..part.mesh.cloud().n_nodes()).map(NodeId::of);
         let stresses: Vec<Stress> = nodes.map(|node| solution.stress_at_node(node)).collect();
         let of_stress = |of: fn(&Stress) -> f64| stresses.iter().map(of).collect();
@@ -33,6 +35,7 @@ impl<'a> NodeFields<'a> {
                 ("tau", of_stress(|stress| stress.magnitude())),
             ],
             residual: residuals(&part.mesh, &solution.field, solution.g_theta),
+            error_indicator: estimate.made().map(|estimate| estimate.indicators.clone()),
             stars: solution.used_stars.diagnostics(&part.mesh),
         }
     }
@@ -51,6 +54,7 @@ impl<'a> NodeFields<'a> {
             part,
             at_nodes,
             residual: solution.residuals(&part.mesh, |p| data.settings.source.at(p)),
+            error_indicator: None,
             stars: solution.used_stars.diagnostics(&part.mesh),
         }
     }

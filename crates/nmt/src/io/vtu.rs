@@ -30,7 +30,8 @@ pub fn vtu_of_meshes(sink: &mut dyn Write, parts: &[MeshPart]) -> io::Result<()>
 
 /// The meshes with the solution: its fields (`F, tau_zx, tau_zy, tau` of torsion) and the stars of the equations (`star_size, star_order,
 /// star_radius, star_condition, star_hidden, star_diagonal, star_residual`, 0 where a node has none) at nodes, `residual`
-/// of the differential equation at centroids.
+/// of the differential equation at centroids, and where errors are estimated what each triangle contributes to that of J,
+/// `error_indicator`.
 ///
 /// # Errors
 /// Those of `sink`.
@@ -52,6 +53,13 @@ pub fn vtu_of_solutions(sink: &mut dyn Write, parts: &[NodeFields]) -> io::Resul
     grid.out.push("</PointData>\n");
     grid.cell_data(&meshes);
     grid.numbers("residual", parts.iter().flat_map(|fields| fields.residual.iter().copied()));
+    if parts.iter().any(|fields| fields.error_indicator.is_some()) {
+        let indicators = parts.iter().flat_map(|fields| match &fields.error_indicator {
+            Some(own) => own.clone(),
+            None => vec![0.0; fields.part.mesh.n_triangles()],
+        });
+        grid.numbers("error_indicator", indicators);
+    }
     grid.close()
 }
 

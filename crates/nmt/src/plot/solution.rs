@@ -1,4 +1,5 @@
-//! The picture of a solution, of torsion or of a Poisson problem: four panels of filled contours, each with its colour bar.
+//! The picture of a solution, of torsion or of a Poisson problem: four panels of filled contours, each with its colour bar;
+//! and that of its error, one such panel.
 
 use super::axes::{Axes, Extent, LEAST_FRAME, Margins, View};
 use super::colour::{Map, Rgb};
@@ -65,13 +66,23 @@ pub(super) const POISSON: [Panel; 4] = [
     Panel { name: "Size of the gradient", symbol: "|grad u|", subscript: "", map: Map::Sequential, id: "gradient" },
 ];
 
+/// Where the error of J comes from.
+pub(super) const INDICATOR: [Panel; 1] = [Panel {
+    name: "Density of the error of J",
+    symbol: "log e",
+    subscript: "",
+    map: Map::Sequential,
+    id: "indicator",
+}];
+
 /// The last panel of a Poisson problem whose exact solution is known.
 pub(super) const ERROR: Panel =
     Panel { name: "Error", symbol: "u − u", subscript: "exact", map: Map::Diverging, id: "error" };
 
 impl Panel {
-    /// `(a) Prandtl function F`, without the words where there is no room for them.
-    fn title(&self, letter: char, room: f64) -> Vec<Run> {
+    /// `(a) Prandtl function F`, without the words where there is no room for them; a panel alone has no letter.
+    fn title(&self, letter: Option<char>, room: f64) -> Vec<Run> {
+        let letter = letter.map_or(String::new(), |letter| format!("({letter}) "));
         let build = |words: String| {
             let mut runs = vec![Run::upright(words), Run::new(self.symbol, Style::Italic)];
             if !self.subscript.is_empty() {
@@ -79,8 +90,8 @@ impl Panel {
             }
             runs
         };
-        let long = build(format!("({letter}) {} ", self.name));
-        if width(&long, PANEL_TITLE_SIZE) <= room { long } else { build(format!("({letter}) ")) }
+        let long = build(format!("{letter}{} ", self.name));
+        if width(&long, PANEL_TITLE_SIZE) <= room { long } else { build(letter) }
     }
 }
 
@@ -102,8 +113,11 @@ impl Arrangement {
         room.map(|r| r.max(LEAST_FRAME))
     }
 
-    /// Two by two, or one column or one row where a slender section is drawn larger so.
-    fn best(extent: &Extent) -> Self {
+    /// Two by two, or one column or one row where a slender section is drawn larger so; of one panel there is one.
+    fn best(extent: &Extent, panels: usize) -> Self {
+        if panels == 1 {
+            return Self { columns: 1, rows: 1 };
+        }
         let scale = |a: Self| View::fit(extent, a.room()).scale;
         let square = Self { columns: 2, rows: 2 };
         [Self { columns: 1, rows: 4 }, Self { columns: 4, rows: 1 }].into_iter().fold(square, |best, other| {
@@ -113,16 +127,16 @@ impl Arrangement {
     }
 }
 
-/// The figure of the solution on all parts: for each the values of the four `panels`; `size`, the largest magnitude of the
+/// The figure of fields on all parts: for each the values of the `panels`, four or one; `size`, the largest magnitude of the
 /// vector whose components are those of the signed panels, tells what is rounding in them.
-pub(super) fn scene(
+pub(super) fn scene<const N: usize>(
     caption: &Caption<'_>,
-    panels: &[Panel; 4],
-    parts: &[(Part<'_>, [&[f64]; 4])],
+    panels: &[Panel; N],
+    parts: &[(Part<'_>, [&[f64]; N])],
     size: impl Fn(&Panel) -> f64,
 ) -> Scene {
     let extent = Extent::of(parts.iter().map(|(part, _)| part));
-    let arrangement = Arrangement::best(&extent);
+    let arrangement = Arrangement::best(&extent, N);
     let axes = Axes::new(View::fit(&extent, arrangement.room()), caption.units);
     let Margins { left, right, top, bottom } = axes.margins();
     let head = HEAD.max(top);
@@ -131,7 +145,7 @@ pub(super) fn scene(
     let values = |k: usize| {
         parts.iter().flat_map(move |(part, fields)| fields[k][..fields[k].len().min(part.xy.len())].iter().copied())
     };
-    let noise: [f64; 4] = std::array::from_fn(|k| {
+    let noise: [f64; N] = std::array::from_fn(|k| {
         let own = if panels[k].is_signed() { largest(values(k)) } else { 0.0 };
         NOISE_REL * size(&panels[k]).max(own)
     });
@@ -140,10 +154,10 @@ pub(super) fn scene(
         .any(|(part, _)| !part.spacings.is_empty())
         .then(|| parts.iter().map(|(part, _)| node_areas(part)).collect::<Vec<_>>());
     let topologies: Vec<Option<Topology>> = parts.iter().map(|(part, fields)| common_topology(part, fields)).collect();
-    let scales: [Option<Scale>; 4] = std::array::from_fn(|k| match &areas {
+    let scales: [Option<Scale>; N] = std::array::from_fn(|k| match &areas {
         None => Scale::new(values(k), panels[k].map, noise[k]),
         Some(areas) => {
-            let of_part = |((part, fields), areas): (&(Part<'_>, [&[f64]; 4]), &Vec<f64>)| {
+            let of_part = |((part, fields), areas): (&(Part<'_>, [&[f64]; N]), &Vec<f64>)| {
                 let values = fields[k].iter().take(part.xy.len()).zip(areas);
                 values.map(|(&value, &weight)| Weighed { value, weight }).collect::<Vec<_>>()
             };
@@ -167,7 +181,7 @@ pub(super) fn scene(
             .zip(&topologies)
             .map(|((part, fields), topology)| Field { part, values: fields[number], topology: topology.as_ref() })
             .collect();
-        let title = panel.title(LETTERS[number], frame_width);
+        let title = panel.title(LETTERS.get(number).copied().filter(|_| N > 1), frame_width);
         let drawn = panel_shapes(scale.as_ref(), &fields, noise[number], &axes, [x, y], title);
         shapes.push(Shape::Group { id: panel.id, shapes: drawn });
     }
@@ -183,8 +197,8 @@ struct Field<'a> {
     topology: Option<&'a Topology>,
 }
 
-/// The triangulation of all four fields at once, where every node has a value of each.
-fn common_topology(part: &Part<'_>, fields: &[&[f64]; 4]) -> Option<Topology> {
+/// The triangulation of all fields at once, where every node has a value of each.
+fn common_topology(part: &Part<'_>, fields: &[&[f64]]) -> Option<Topology> {
     let is_whole = |values: &&[f64]| values.get(..part.xy.len()).is_some_and(|v| v.iter().all(|&v| is_drawable(v)));
     // Orientation and area do not depend on where on the page it stands, but for the direction of y.
     let points = || page_points(part, &|p| [p[0], -p[1]]);
@@ -299,7 +313,7 @@ mod tests {
     #[test]
     fn slender_sections_are_stacked_along_their_length() {
         let best = |w: f64, h: f64| {
-            let a = Arrangement::best(&Extent { min: [0.0; 2], max: [w, h] });
+            let a = Arrangement::best(&Extent { min: [0.0; 2], max: [w, h] }, 4);
             (a.columns, a.rows)
         };
         assert_eq!(best(1.0, 1.0), (2, 2));
@@ -310,7 +324,7 @@ mod tests {
 
     #[test]
     fn a_panel_without_room_keeps_its_symbol() {
-        let text = |room: f64| TORSION[1].title('b', room).into_iter().map(|r| r.text).collect::<String>();
+        let text = |room: f64| TORSION[1].title(Some('b'), room).into_iter().map(|r| r.text).collect::<String>();
         assert_eq!(text(300.0), "(b) Shear stress τzx");
         assert_eq!(text(100.0), "(b) τzx");
     }

@@ -27,6 +27,11 @@ const MOST_SWEEPS: i128 = 1000;
 /// Without clearance a cloud has every grid point strictly inside; beyond two spacings it has no use.
 const CLEARANCE: [f64; 2] = [0.0, 2.0];
 
+/// Least and most relative error of J to refine clouds down to.
+///
+/// Rounding leaves some 1e-13; beyond a tenth J is no number to build on.
+const TOLERANCE: [f64; 2] = [1.0e-12, 0.1];
+
 /// Why a value is refused, and what to give instead.
 #[derive(Debug, PartialEq)]
 pub(super) struct Refusal {
@@ -62,6 +67,25 @@ pub(super) fn real(name: &str, value: f64) -> Result<f64, Refusal> {
         return refuse(message, "choose a unit in which it is smaller");
     }
     Ok(value)
+}
+
+/// A relative error of J.
+pub(super) fn tolerance(value: f64) -> Result<f64, Refusal> {
+    let [least, most] = TOLERANCE;
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("`tolerance` is {}, outside [{least:e}, {most}]", show(value));
+    refuse(message, "give the relative error of J that is good enough, such as 1e-4")
+}
+
+/// The most nodes on the way to a tolerance.
+pub(super) fn max_nodes(value: i128) -> Result<usize, Refusal> {
+    if (1..=MAX_GRID_POINTS as i128).contains(&value) {
+        return Ok(value as usize);
+    }
+    let message = format!("`max_nodes` is {value}, outside 1 to {MAX_GRID_POINTS:e}");
+    refuse(message, "give the most nodes that a subdomain may have, such as 100000")
 }
 
 /// A radius, semi-axis or modulus.

@@ -37,7 +37,7 @@ impl PoissonDraft {
                 datum.formula = formula::of_the_plane(reader, ITEM, key, value, example);
             }
         }
-        let given = ["twist", "torque", "holes"].into_iter();
+        let given = ["twist", "torque", "holes", "estimate", "tolerance", "max_nodes"].into_iter();
         torsion.extend(given.filter_map(|key| Some((key, Place::File(table.get(key)?.span())))));
     }
 
@@ -57,11 +57,18 @@ impl PoissonDraft {
             }
         }
         let shown = |value: Option<f64>| value.map(super::limits::show);
-        let given =
-            [("twist", shown(options.twist)), ("torque", shown(options.torque)), ("holes", options.holes.clone())];
+        let given = [
+            ("twist", shown(options.twist)),
+            ("torque", shown(options.torque)),
+            ("holes", options.holes.clone()),
+            ("tolerance", shown(options.tolerance)),
+            ("max-nodes", options.max_nodes.map(|most| most.to_string())),
+        ];
         let place =
             |(key, value): (&'static str, Option<String>)| Some((key, Place::Option(format!("--{key} {}", value?))));
         torsion.extend(given.into_iter().filter_map(place));
+        let no_estimate = options.estimate.map(|_| ("no-estimate", Place::Option("--no-estimate".into())));
+        torsion.extend(no_estimate);
     }
 
     /// The data of a Poisson problem; `None` for torsion.

@@ -147,6 +147,12 @@ pub struct SolveSettings {
     pub solver: Solver,
     /// Seed of the randomisation.
     pub seed: u64,
+    /// Whether the errors of torsion are estimated; true by default.
+    pub estimate: bool,
+    /// The error of J, as a fraction of it, that clouds are refined down to; `None` for the clouds as they are given.
+    pub tolerance: Option<f64>,
+    /// Most nodes of a subdomain on the way to a tolerance; 10⁶ by default.
+    pub max_nodes: usize,
     /// Where `star` is given.
     pub star_place: Option<Place>,
     /// What makes it a Poisson problem; `None` for torsion.
@@ -179,6 +185,9 @@ impl Default for SolveSettings {
             gauss: None,
             solver: Solver::default(),
             seed: nmt_cloud::DEFAULT_SEED,
+            estimate: true,
+            tolerance: None,
+            max_nodes: 1_000_000,
             star_place: None,
             poisson: None,
         }
@@ -239,6 +248,12 @@ pub struct Overrides {
     pub solver: Option<String>,
     /// `--seed`.
     pub seed: Option<u64>,
+    /// `--no-estimate` is `Some(false)`.
+    pub estimate: Option<bool>,
+    /// `--tolerance`.
+    pub tolerance: Option<f64>,
+    /// `--max-nodes`.
+    pub max_nodes: Option<i64>,
     /// `--method`.
     pub method: Option<String>,
     /// `--smooth`.

@@ -6,7 +6,9 @@ use super::poisson::PoissonDraft;
 use super::read::{SubdomainDraft, option};
 use super::schema::{Overrides, SolveSettings};
 use super::tree::{Reader, SOLVE_KEYS, Table, Value};
-use nmt_mfdm::{Formulation, Load};
+use nmt_cloud::ClearanceUnit;
+use nmt_curve::Division;
+use nmt_mfdm::{Formulation, HoleCondition, Load};
 use toml::de::{DeTable, DeValue};
 
 /// The table's name in messages.
@@ -31,6 +33,10 @@ struct Given {
     star: Option<Star>,
     /// Keys that not every formulation knows, with their places.
     keys: Vec<(Key, Place)>,
+    /// Where a tolerance is given.
+    tolerance: Option<Place>,
+    /// Where the most nodes on the way to it are.
+    max_nodes: Option<Place>,
 }
 
 /// A `star`, which wants an order to be checked against.
@@ -145,6 +151,18 @@ impl SolveDraft {
         if let Some(seed) = table.get("seed").and_then(|v| reader.whole(ITEM, "seed", v, "1", limits::seed)) {
             settings.seed = seed;
         }
+        if let Some(value) = table.get("estimate") {
+            settings.estimate = reader.boolean(ITEM, "estimate", value).unwrap_or(settings.estimate);
+        }
+        if let Some(value) = table.get("tolerance") {
+            settings.tolerance = reader.number(ITEM, "tolerance", value, "1e-4", |_, value| limits::tolerance(value));
+            file.tolerance = Some(value.span().into());
+        }
+        if let Some(value) = table.get("max_nodes") {
+            let most = reader.whole(ITEM, "max_nodes", value, "100000", limits::max_nodes);
+            settings.max_nodes = most.unwrap_or(settings.max_nodes);
+            file.max_nodes = Some(value.span().into());
+        }
     }
 
     /// Puts the options of the command over the settings of the file.
@@ -206,6 +224,18 @@ impl SolveDraft {
         if let Some(seed) = options.seed {
             settings.seed = seed;
         }
+        settings.estimate = options.estimate.unwrap_or(settings.estimate);
+        if let Some(tolerance) = options.tolerance {
+            let place = place("tolerance", &limits::show(tolerance));
+            settings.tolerance = option(faults, &place, limits::tolerance(tolerance));
+            given.tolerance = Some(place);
+        }
+        if let Some(most) = options.max_nodes {
+            let place = place("max-nodes", &most);
+            let most = option(faults, &place, limits::max_nodes(most.into()));
+            settings.max_nodes = most.unwrap_or(settings.max_nodes);
+            given.max_nodes = Some(place);
+        }
     }
 
     /// The settings, after the checks that want the formulations of the subdomains (as the file has them).
@@ -214,6 +244,7 @@ impl SolveDraft {
     /// `order`, which then has no use. An option must have a use.
     pub(super) fn finish(mut self, subdomains: &[SubdomainDraft], faults: &mut Faults) -> SolveSettings {
         self.settings.poisson = std::mem::take(&mut self.poisson).finish(subdomains, faults);
+        self.check_tolerance(subdomains, faults);
         let unread = self.options.formulation_unread
             || self.file.formulation_unread
             || subdomains.iter().any(|subdomain| subdomain.formulation_unread);
@@ -252,6 +283,47 @@ impl SolveDraft {
         if let Some(star) = self.options.star.as_ref().or(self.file.star.as_ref()) {
             self.settings.star = check(star, self.settings.order);
             self.settings.star_place = Some(star.place.clone());
+        }
+    }
+
+    /// A tolerance wants an estimate, and clouds that may be graded.
+    fn check_tolerance(&self, subdomains: &[SubdomainDraft], faults: &mut Faults) {
+        let Some(place) = self.options.tolerance.as_ref().or(self.file.tolerance.as_ref()) else {
+            if let Some(place) = self.options.max_nodes.as_ref().or(self.file.max_nodes.as_ref()) {
+                let message = "`max_nodes` is given, and belongs to a `tolerance`, which is not";
+                faults.push(
+                    place.clone(),
+                    item(place),
+                    message,
+                    "give tolerance = 1e-4 (--tolerance) too, or leave it out",
+                );
+            }
+            return;
+        };
+        let mut refuse = |message: String, remedy: &str| faults.push(place.clone(), item(place), message, remedy);
+        if !self.settings.estimate {
+            refuse(
+                "`tolerance` is given, and no error is estimated".into(),
+                "leave `estimate = false` (--no-estimate) out",
+            );
+        }
+        if self.settings.holes == HoleCondition::Zero && subdomains.iter().any(|subdomain| !subdomain.holes.is_empty())
+        {
+            let message = "`tolerance` is given, and with F = 0 on holes there is no estimate of J";
+            refuse(message.into(), "leave holes = \"zero\" out, or the tolerance");
+        }
+        for subdomain in subdomains {
+            let uniform = [
+                (subdomain.division == Division::Chord, "division = \"chord\""),
+                (subdomain.clearance == ClearanceUnit::Scaled, "clearance = \"scaled\""),
+            ];
+            for (_, written) in uniform.iter().filter(|(given, _)| *given) {
+                let message = format!(
+                    "`tolerance` is given, which makes clouds graded, and {written} of {} belongs to uniform ones",
+                    subdomain.item
+                );
+                refuse(message, "leave one of the two out");
+            }
         }
     }
 

@@ -1,15 +1,17 @@
 //! The report as data; the field names are those of report.json.
 
-use crate::pipeline::{CloudPart, MeshPart, PoissonPart, Solved, SolvedPart};
+use crate::pipeline::{CloudPart, Estimated, MeshPart, PoissonPart, Solved, SolvedPart};
 use crate::problem::Problem;
 use crate::report::common::{self, CommonEdgeReport};
 use crate::report::edges::{AlongEdges, EdgeReport, LoopReport};
+use crate::report::estimate::ErrorEstimateReport;
 use crate::report::linear::LinearSolverReport;
 use crate::report::points::{self, PointReport, PointValues};
 use crate::report::poisson::PoissonReport;
 use crate::report::singular::singular_vertices;
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
+use crate::report::tolerance::ToleranceReport;
 use crate::report::warnings;
 use nmt_cloud::{Achieved, Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::{NodeId, Point};
@@ -230,6 +232,12 @@ pub struct SolutionReport {
     pub tau_max_at: Point,
     /// Vertices where the exact τ is infinite.
     pub tau_singular_at: Vec<Point>,
+    /// How far J, T and τ_max may be off; absent where nobody asked or nothing can be said, of which a warning tells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimateReport>,
+    /// The way to a tolerance; absent where none is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<ToleranceReport>,
     /// τ along each edge, in the order of the file.
     pub edges: Vec<EdgeReport>,
     /// ∮τ·ds of each loop, the contour first.
@@ -277,6 +285,9 @@ pub struct Seconds {
     /// Recovery and results.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub post: Option<f64>,
+    /// How far the results may be off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
 }
 
 /// Of all subdomains together.
@@ -289,6 +300,12 @@ pub struct Totals {
     /// Peak memory in 10⁶ bytes, filled in likewise; `null` where the system does not tell.
     pub peak_rss_mb: Option<f64>,
 }
+
+/// Of a solved subdomain, until somebody fills in what the clock said.
+const SOLVED: Seconds = {
+    let zero = Some(0.0);
+    Seconds { cloud: 0.0, mesh: zero, stencils: zero, assemble: zero, solve: zero, post: zero, estimate: None }
+};
 
 impl Report {
     /// The report of clouds.
@@ -322,7 +339,8 @@ impl Report {
 
     /// The report of solutions, with the values at `points`.
     pub fn of_solutions(problem: &Problem, parts: &[SolvedPart], points: &[Point]) -> Self {
-        let mut report = Self::new(problem, parts.iter().map(solved_report).collect());
+        let mut report =
+            Self::new(problem, parts.iter().map(|part| solved_report(part, problem.solve.tolerance)).collect());
         let meshes = parts.iter().map(|solved| &solved.part);
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
@@ -470,8 +488,8 @@ fn mesh_report(part: &MeshPart) -> SubdomainReport {
     }
 }
 
-fn solved_report(solved: &SolvedPart) -> SubdomainReport {
-    let SolvedPart { part, params, solution } = solved;
+fn solved_report(solved: &SolvedPart, tolerance: Option<f64>) -> SubdomainReport {
+    let SolvedPart { part, params, solution, estimate, .. } = solved;
     let AlongEdges { edges, loops } = AlongEdges::of(solved);
     let hole = |(name, hole): (&String, &nmt_mfdm::HoleResult)| HoleReport {
         name: name.clone(),
@@ -494,25 +512,21 @@ fn solved_report(solved: &SolvedPart) -> SubdomainReport {
         tau_max: solution.tau_max.value,
         tau_max_at: solution.tau_max.at,
         tau_singular_at: singular_vertices(&part.section),
+        error_estimate: ErrorEstimateReport::of(solved),
+        tolerance: tolerance.and_then(|asked| ToleranceReport::of(solved, asked)),
         edges,
         loops,
         linear_residual: solution.linear.residual,
         linear_solver: LinearSolverReport::of(&solution.linear),
         stars: StarsReport::of(params, &solution.stars),
     };
-    let zero = Some(0.0);
     SubdomainReport {
         solution: Some(solution),
-        seconds: Seconds { cloud: 0.0, mesh: zero, stencils: zero, assemble: zero, solve: zero, post: zero },
+        seconds: Seconds { estimate: (*estimate != Estimated::NotAsked).then_some(0.0), ..SOLVED },
         ..mesh_report(part)
     }
 }
 
 fn poisson_report(solved: &PoissonPart) -> SubdomainReport {
-    let zero = Some(0.0);
-    SubdomainReport {
-        poisson: Some(PoissonReport::of(solved)),
-        seconds: Seconds { cloud: 0.0, mesh: zero, stencils: zero, assemble: zero, solve: zero, post: zero },
-        ..mesh_report(&solved.part)
-    }
+    SubdomainReport { poisson: Some(PoissonReport::of(solved)), seconds: SOLVED, ..mesh_report(&solved.part) }
 }

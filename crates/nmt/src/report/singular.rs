@@ -14,18 +14,20 @@ const ORIENTATION_TOLERANCE_REL: f64 = 1.0e-3;
 /// The vertices of all outlines whose interior angle, between the edge tangents and through the material, exceeds 181°;
 /// never nodes of a curve.
 pub fn singular_vertices(section: &Section) -> Vec<Point> {
-    let mut singular = Vec::new();
+    vertex_angles(section).into_iter().filter(|(_, angle)| *angle > SINGULAR_ANGLE).map(|(at, _)| at).collect()
+}
+
+/// The vertices of all outlines with their interior angles, between the edge tangents and through the material.
+pub(crate) fn vertex_angles(section: &Section) -> Vec<(Point, f64)> {
+    let mut angles = Vec::new();
     for (k, outline) in section.loops().enumerate() {
         let flat = outline.flatten(ORIENTATION_TOLERANCE_REL * outline.envelope().size());
         let left_is_inside = ring::signed_area(&flat) > 0.0;
         let material_on_left = left_is_inside == (k == 0);
         for (vertex, &at) in outline.vertices.iter().enumerate() {
             let left = outline.interior_angle(vertex);
-            let angle = if material_on_left { left } else { TAU - left };
-            if angle > SINGULAR_ANGLE {
-                singular.push(at);
-            }
+            angles.push((at, if material_on_left { left } else { TAU - left }));
         }
     }
-    singular
+    angles
 }

@@ -7,6 +7,7 @@ use crate::report::points::{PointReport, PointValues};
 use crate::report::poisson::{ErrorReport, PoissonReport};
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
+use crate::report::tolerance::{StepReport, ToleranceReport};
 use std::fmt::Write as _;
 
 /// Width of the left column.
@@ -152,6 +153,13 @@ impl<U: Fn(i32) -> String> Text<U> {
             self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));
         }
         self.row("J = T/(Gθ)", format!("{}{u4}, torsion constant", number(s.j)));
+        if let Some(estimate) = &s.error_estimate {
+            self.row("J is between", format!("{}{u4}", estimate.bounds()));
+            self.row("estimated errors", estimate.errors());
+        }
+        if let Some(tolerance) = &s.tolerance {
+            self.steps(tolerance);
+        }
         self.row("torque T", number(s.torque));
         self.row("twist θ", number(s.twist));
         self.row("W_t = T/τ_max", format!("{}{u3}, torsional section modulus", number(s.w_t)));
@@ -164,6 +172,22 @@ impl<U: Fn(i32) -> String> Text<U> {
         }
         let rows = edges::rows(&s.edges, &(self.length)(1));
         let _ = writeln!(self.out, "  τ along edges");
+        self.table("    ", &rows);
+    }
+
+    /// The way to a tolerance.
+    fn steps(&mut self, tolerance: &ToleranceReport) {
+        let verdict = if tolerance.reached { "reached" } else { "not reached" };
+        self.row(
+            "tolerance",
+            format!("{:e} of J, {verdict} on {}", tolerance.asked, counted(tolerance.steps.len(), "cloud", "clouds")),
+        );
+        let heads = ["nodes", "J", "estimated error", "seconds"].map(str::to_owned);
+        let row = |step: &StepReport| {
+            let error = step.error.map_or("none, too coarse".to_owned(), |error| format!("{error:.1e}"));
+            [step.nodes.to_string(), number(step.j), error, format!("{:.3}", step.seconds)]
+        };
+        let rows: Vec<[String; 4]> = std::iter::once(heads).chain(tolerance.steps.iter().map(row)).collect();
         self.table("    ", &rows);
     }
 

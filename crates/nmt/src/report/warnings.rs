@@ -85,10 +85,11 @@ pub(super) fn of_corners(name: &str, section: &Section) -> Option<String> {
 
 /// Warnings of a solution of torsion, beyond those of its section.
 pub(super) fn of_solution(solved: &SolvedPart) -> Vec<String> {
-    let SolvedPart { part, params, solution } = solved;
+    let SolvedPart { part, params, solution, estimate, .. } = solved;
     let stars = [&solution.stars, &solution.recovery_stars];
     let mut warnings = of_equations(&part.name, params, stars, ["J stays", "stresses"]);
     warnings.extend(of_linear_solve(&part.name, &solution.linear));
+    warnings.extend(estimate.refused().map(|why| format!("subdomain \"{}\": no error is estimated: {why}", part.name)));
     warnings
 }
 

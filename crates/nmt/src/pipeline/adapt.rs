@@ -1,0 +1,271 @@
+//! Solving to a tolerance: refine where the estimate says that nodes are missing, and solve again.
+//!
+//! Every triangle shall contribute as much to the error of J as any other: that is the cloud with the fewest nodes. What a
+//! triangle contributes falls by h^(2p+2) where F is smooth, and at a corner of interior angle ω by h^(2π/ω), so that
+//! nodes are asked for by both laws, the corners' spacing at once and not by halves.
+
+use super::{Event, elimination_fault, torsion_fault};
+use super::{Finer, MeshPart, Observer, SolvedPart, clouds_of, mesh_of, solution_of};
+use crate::error::NmtError;
+use crate::problem::Problem;
+use crate::report::vertex_angles;
+use nmt_cloud::{DEFAULT_GROWTH, MIN_SPACING_REL, Refinement, Target};
+use nmt_geom::{NodeId, Point};
+use nmt_mfdm::{ErrorEstimate, Formulation};
+use nmt_tri::NodeTris;
+use std::f64::consts::PI;
+
+/// One solution on the way to a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Nodes of its cloud.
+    pub nodes: usize,
+    /// Its J.
+    pub j: f64,
+    /// The estimated error of J as a fraction of it; infinite where the cloud is too coarse for an estimate.
+    pub error: f64,
+}
+
+/// Clouds after which it is given up.
+const MOST_STEPS: usize = 14;
+
+/// By how much the number of nodes grows in one step, at most: what coarse clouds foretell is not to be relied on.
+const MOST_GROWTH: f64 = 4.0;
+
+/// By how much it grows at least: what is nearly good enough shall not be solved again and again.
+const LEAST_GROWTH: f64 = 1.6;
+
+/// The spacing in one step becomes this part of what it was, at least; at corners with a law of their own, that below.
+const LEAST_FACTOR: f64 = 0.125;
+const LEAST_CORNER_FACTOR: f64 = 1.0e-3;
+
+/// It becomes coarser by this factor, at most.
+const MOST_FACTOR: f64 = 1.4;
+
+/// The part of the tolerance that is aimed at, so that it is not missed by a hair and solved once more.
+const AIM: f64 = 0.6;
+
+/// The part of it that all corners together may have.
+const CORNERS: f64 = 0.05;
+
+/// Solves torsion in all subdomains, each on clouds that are refined until the estimated error of its J is at most
+/// `tolerance`·J, or until that would take more nodes than [`crate::problem::SolveSettings::max_nodes`]: then the best of them. [`Step::of`] the solution tells.
+///
+/// The first clouds are those of the file; refined ones are never coarser than that spacing.
+///
+/// # Errors
+/// As [`super::clouds`], [`super::meshes`] and [`super::solutions`], for the first clouds; those of finer ones end the refinement.
+pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) -> Result<Vec<SolvedPart>, NmtError> {
+    if let Some(fault) = torsion_fault(problem, "has no torsion", "leave it out, or call solve_any") {
+        return Err(NmtError::Problem(vec![fault]));
+    }
+    let n = problem.subdomains.len();
+    let is_conforming = problem.subdomains.iter().any(|subdomain| subdomain.conforming);
+    let mut finer = Finer(vec![Vec::new(); n]);
+    let mut ways: Vec<Way> = (0..n).map(|_| Way::default()).collect();
+    let mut wanted = vec![true; n];
+    for step in 0..MOST_STEPS {
+        let round = match round(problem, &finer, &wanted, observer) {
+            Ok(round) => round,
+            Err(error) if step == 0 => return Err(error),
+            // What has been found so far stands, and says that it does not meet the tolerance.
+            Err(_) => break,
+        };
+        for (k, part) in round {
+            observer(k, Event::Step(Step::of(&part)));
+            ways[k].add(part);
+        }
+        for (k, way) in ways.iter().enumerate() {
+            let most = problem.solve.max_nodes;
+            let refined = way.latest.as_ref().and_then(|part| refined(part, tolerance, most));
+            wanted[k] = refined.is_some();
+            refined.into_iter().for_each(|refinements| finer.0[k] = refinements);
+        }
+        if !wanted.contains(&true) {
+            break;
+        }
+        if is_conforming {
+            // Its neighbours have the nodes of a finer side too.
+            wanted.fill(true);
+        }
+    }
+    Ok(ways.into_iter().filter_map(Way::best).collect())
+}
+
+/// The solutions of one subdomain.
+#[derive(Default)]
+struct Way {
+    latest: Option<SolvedPart>,
+    /// The best before the latest.
+    before: Option<SolvedPart>,
+    history: Vec<Step>,
+}
+
+impl Way {
+    fn add(&mut self, part: SolvedPart) {
+        self.history.push(Step::of(&part));
+        self.before = better(self.before.take(), self.latest.take());
+        self.latest = Some(part);
+    }
+
+    fn best(self) -> Option<SolvedPart> {
+        let best = better(self.before, self.latest)?;
+        Some(SolvedPart { history: self.history, ..best })
+    }
+}
+
+/// The one whose estimate is smaller; of two alike the later one.
+fn better(a: Option<SolvedPart>, b: Option<SolvedPart>) -> Option<SolvedPart> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if Step::of(&a).error < Step::of(&b).error { a } else { b }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// The subdomains that are wanted, from cloud to estimate.
+fn round(
+    problem: &Problem,
+    finer: &Finer,
+    wanted: &[bool],
+    observer: &mut Observer,
+) -> Result<Vec<(usize, SolvedPart)>, NmtError> {
+    let clouds = clouds_of(problem, finer, wanted, observer)?;
+    let numbers = (0..wanted.len()).filter(|k| wanted[*k]);
+    let mut meshes: Vec<(usize, MeshPart)> = Vec::new();
+    for (k, cloud) in numbers.zip(clouds) {
+        meshes.push((k, mesh_of(problem, k, cloud, observer)?));
+    }
+    if let Some(fault) = meshes.iter().find_map(|(_, part)| elimination_fault(problem, part)) {
+        return Err(NmtError::Problem(vec![fault]));
+    }
+    meshes.into_iter().map(|(k, part)| Ok((k, solution_of(problem, k, part, observer)?))).collect()
+}
+
+impl Step {
+    /// The step that a solution is.
+    pub fn of(solved: &SolvedPart) -> Self {
+        let error = solved.estimate.made().map_or(f64::INFINITY, |estimate| estimate.relative(solved.solution.j));
+        Self { nodes: solved.part.mesh.cloud().n_nodes(), j: solved.solution.j, error }
+    }
+}
+
+/// What the next cloud shall be refined to; `None` where the tolerance is met, or would take too many nodes.
+fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec<Refinement>> {
+    let cloud = solved.part.mesh.cloud();
+    let spacing = |node: usize| cloud.local_spacing(NodeId::of(node));
+    let (factors, corners) = match solved.estimate.made() {
+        Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return None,
+        Some(estimate) => {
+            let sought = Sought::new(solved, estimate, tolerance);
+            (sought.factors(), sought.corners())
+        }
+        // Too coarse to say anything: half the spacing everywhere.
+        None => (vec![0.5; cloud.n_nodes()], Vec::new()),
+    };
+    let nodes: f64 = factors.iter().map(|factor| factor.powi(-2)).sum();
+    if nodes > most_nodes as f64 {
+        return None;
+    }
+    let at = |(node, factor): (usize, f64)| Refinement {
+        target: Target::Point(cloud.xy()[node]),
+        size: (factor * spacing(node)).max(least_spacing(solved)),
+        growth: DEFAULT_GROWTH,
+    };
+    let everywhere = factors.into_iter().enumerate().map(at);
+    Some(everywhere.chain(corners).collect())
+}
+
+/// The least spacing of a cloud, and some room to it.
+fn least_spacing(solved: &SolvedPart) -> f64 {
+    2.0 * MIN_SPACING_REL * solved.part.section.contour.envelope().size()
+}
+
+/// What is sought: contributions that sum to less than the tolerance, and are all alike.
+struct Sought<'a> {
+    solved: &'a SolvedPart,
+    node_tris: NodeTris,
+    indicators: &'a [f64],
+    /// p, the order of the gradient.
+    order: f64,
+    /// What all triangles shall contribute together.
+    all: f64,
+}
+
+impl<'a> Sought<'a> {
+    fn new(solved: &'a SolvedPart, estimate: &'a ErrorEstimate, tolerance: f64) -> Self {
+        let mesh = &solved.part.mesh;
+        let sum: f64 = estimate.indicators.iter().sum();
+        // Where the estimate is larger than the sum of what the triangles contribute, both fall together.
+        let share = (estimate.j / sum).max(1.0);
+        let order = match solved.params.formulation {
+            Formulation::Fem => 1.0,
+            Formulation::Local | Formulation::Variational => solved.params.order as f64,
+        };
+        Self {
+            solved,
+            node_tris: NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes()),
+            indicators: &estimate.indicators,
+            order,
+            all: AIM * tolerance * solved.solution.j.abs() / share,
+        }
+    }
+
+    /// New spacing over old at every node.
+    fn factors(&self) -> Vec<f64> {
+        // N = S·τ^(−1/(p+1)) triangles that contribute τ each; N·τ = all.
+        let power = 1.0 / (self.order + 1.0);
+        let sum: f64 = self.indicators.iter().map(|own| own.powf(power)).sum();
+        let each = (self.all / sum).powf((self.order + 1.0) / self.order);
+        let factor_of = |each: f64, own: f64| match own > 0.0 {
+            true => (each / own).powf(0.5 * power).clamp(LEAST_FACTOR, MOST_FACTOR),
+            false => MOST_FACTOR,
+        };
+        let growth = |each: f64| {
+            self.indicators.iter().map(|own| factor_of(each, *own).powi(-2)).sum::<f64>() / self.indicators.len() as f64
+        };
+        // Within what one step may add: larger or smaller contributions, by bisection of their logarithm.
+        let bounded = growth(each).clamp(LEAST_GROWTH, MOST_GROWTH);
+        let each = if growth(each) == bounded { each } else { self.each_for(bounded, growth) };
+        let n_nodes = self.solved.part.mesh.cloud().n_nodes();
+        let largest = |node: usize| self.around(node).fold(0.0, f64::max);
+        (0..n_nodes).map(|node| factor_of(each, largest(node))).collect()
+    }
+
+    /// The contribution with which the number of nodes grows by `wanted`.
+    fn each_for(&self, wanted: f64, growth: impl Fn(f64) -> f64) -> f64 {
+        let positive = self.indicators.iter().copied().filter(|own| *own > 0.0);
+        let (least, most) = positive.fold((f64::MAX, f64::MIN_POSITIVE), |(a, b), own| (a.min(own), b.max(own)));
+        // With these every triangle becomes as small, or as large, as it may.
+        let margin = LEAST_FACTOR.powf(2.0 * self.order + 2.0);
+        let (mut low, mut high) = ((least * margin).max(f64::MIN_POSITIVE).ln(), (most / margin).ln());
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if growth(middle.exp()) > wanted { low = middle } else { high = middle }
+        }
+        high.exp()
+    }
+
+    fn around(&self, node: usize) -> impl Iterator<Item = f64> + '_ {
+        self.node_tris.around(NodeId::of(node)).iter().map(|t| self.indicators[t.index()])
+    }
+
+    /// Refinements at the vertices whose singularity limits the order: r^(π/ω) with π/ω < p + 1.
+    fn corners(&self) -> Vec<Refinement> {
+        let cloud = self.solved.part.mesh.cloud();
+        let angles = vertex_angles(&self.solved.part.section);
+        let limiting: Vec<(Point, f64)> = angles
+            .into_iter()
+            .map(|(at, angle)| (at, PI / angle))
+            .filter(|(_, exponent)| *exponent < self.order + 1.0 && exponent.fract() != 0.0)
+            .collect();
+        let each = CORNERS * self.all / limiting.len().max(1) as f64;
+        let refinement = |(at, exponent): &(Point, f64)| {
+            let node = (0..cloud.n_vertices()).find(|node| cloud.xy()[*node] == *at)?;
+            let own: f64 = self.around(node).sum();
+            let factor = (each / own).powf(0.5 / exponent).max(LEAST_CORNER_FACTOR);
+            let size = (factor * cloud.local_spacing(NodeId::of(node))).max(least_spacing(self.solved));
+            (factor < 1.0).then_some(Refinement { target: Target::Point(*at), size, growth: DEFAULT_GROWTH })
+        };
+        limiting.iter().filter_map(refinement).collect()
+    }
+}
