@@ -88,7 +88,7 @@ impl Program {
         let output = Command::new(&self.0)
             .arg("solve")
             .arg(&file)
-            .arg("--json")
+            .args(["--json", "--no-estimate"])
             .args(options)
             .env("RAYON_NUM_THREADS", threads.to_string())
             .output()
