@@ -2,7 +2,7 @@
 
 use crate::assembly::Frame;
 use crate::blend::NodalPolynomials;
-use crate::circulation::hole_equations;
+use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
@@ -17,7 +17,7 @@ use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
 use crate::steady::steady;
-use crate::stencils::{StarParams, StarReport, Stencils};
+use crate::stencils::{Kept, StarParams, StarReport, Stencils};
 use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
 use crate::weak::WeakForm;
@@ -70,7 +70,11 @@ pub(crate) fn solve_discrete(
     let roles = roles(conditions, mesh, params);
 
     let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, observer)?;
+    let kept = match params.formulation {
+        Formulation::Local if interpolates(params) => Kept::Laplacian,
+        _ => Kept::Derivatives,
+    };
+    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, kept, observer)?;
     observer(Event::Ended(Stage::Stencils));
 
     let rule = params.rule()?;
@@ -89,9 +93,16 @@ pub(crate) fn solve_discrete(
         nearest: &nearest,
         params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
     };
+    // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
+    let of_holes = (kept == Kept::Laplacian).then(|| {
+        let nodes = nodes_of_equations(mesh, &node_tris, &roles, params.formulation);
+        Stencils::of_some((&surroundings, &nearest), stencils.params(), nodes, |node| stencils.known_of(node))
+    });
     let weak = match params.formulation {
         Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
-        Formulation::Local | Formulation::Fem => WeakForm::blended(mesh, &stencils, fluxes, &rule),
+        Formulation::Local | Formulation::Fem => {
+            WeakForm::blended(mesh, of_holes.as_ref().unwrap_or(&stencils), fluxes, &rule)
+        }
     };
     let system = match (mended, params.formulation, params.test) {
         (Some(system), _, _) => system,
@@ -149,7 +160,7 @@ pub(crate) fn star_of_equations(
     let nearest = surroundings.nearest();
     let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
     let roles = roles(conditions, mesh, params);
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, &mut |_| {})?;
+    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?;
     let (rule, source_rule) = (params.rule()?, source_rule(params));
     let node_tris = NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes());
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
@@ -191,6 +202,7 @@ fn stencils_of_equations(
     roles: &Roles,
     fluxes: &Fluxes,
     params: &SolveParams,
+    kept: Kept,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Stencils, MfdmError> {
     let Around { mesh, surroundings, nearest } = around;
@@ -209,7 +221,7 @@ fn stencils_of_equations(
         Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(stretch)),
         Formulation::Variational | Formulation::Fem => None,
     };
-    let stencils = Stencils::meeting(surroundings, nearest, stars, range.clone(), known, observer);
+    let stencils = Stencils::meeting((surroundings, nearest), stars, kept, range.clone(), known, observer);
     stencils.require(range, mesh.xy(), 1)?;
     if params.formulation == Formulation::Local {
         stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;

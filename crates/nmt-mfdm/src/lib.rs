@@ -37,6 +37,7 @@ mod gauss;
 #[cfg(feature = "kernels")]
 #[doc(hidden)]
 pub mod kernels;
+mod lanes;
 mod local;
 mod mend;
 mod mwls;
@@ -46,12 +47,14 @@ mod params;
 mod poisson;
 mod post;
 mod problem;
+mod quartet;
 mod repair;
 mod shapes;
 mod slopes;
 mod solution;
 mod solve;
 mod solver;
+mod sound_stars;
 mod source;
 mod star;
 mod steady;

@@ -1,14 +1,14 @@
 //! Stencils: stars with their coefficient rows, for many nodes.
 
-use crate::basis::n_monomials;
+use crate::basis::{n_monomials, row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
-use crate::mwls::Mwls;
 use crate::parallel::take_pieces;
-use crate::repair::{Demand, StarOutcome, sound_star};
+use crate::repair::{Demand, StarOutcome};
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
-use crate::star::{StarChoice, StarFinder};
+use crate::sound_stars::{SoundStar, SoundStars, Wanted};
+use crate::star::StarChoice;
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::point::{dot, sub};
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Stars per piece of work.
-const PIECE: usize = 1024;
+const PIECE: usize = 256;
 
 /// Order, size and choice of stars.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,19 +80,61 @@ impl StarReport {
     }
 }
 
-/// The stars of consecutive nodes and the rows of their derivatives.
+/// Which rows are kept of each star.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// Those of all derivatives.
+    Derivatives,
+    /// That of ∇² alone, of interpolating polynomials: what the local equations need, a fifth of the whole at order 2.
+    Laplacian,
+}
+
+/// The stars of nodes and the rows of their derivatives.
 #[derive(Clone, Debug)]
 pub struct Stencils {
     params: StarParams,
+    kept: Kept,
     metric: Metric,
-    first: usize,       // number of the first node
+    of: Numbers,
     starts: Vec<usize>, // first star entry of each node, shape (n,)
     sizes: Vec<u32>,    // nodes in each star, shape (n,)
     nodes: Vec<NodeId>, // star after star, each ascending; those of mended stars at the end, their first ones left
-    rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
+    rows: Vec<f64>,     // for a star of m nodes, its rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<StarOutcome>,
     known: BTreeMap<NodeId, KnownSlopes>, // of nodes whose gradient is known in part
+}
+
+/// Which nodes have stencils.
+#[derive(Clone, Debug)]
+enum Numbers {
+    Consecutive(Range<usize>),
+    Some(Vec<NodeId>), // ascending
+}
+
+impl Numbers {
+    fn len(&self) -> usize {
+        match self {
+            Self::Consecutive(range) => range.len(),
+            Self::Some(nodes) => nodes.len(),
+        }
+    }
+
+    fn node(&self, place: usize) -> NodeId {
+        match self {
+            Self::Consecutive(range) => NodeId::of(range.start + place),
+            Self::Some(nodes) => nodes[place],
+        }
+    }
+
+    /// Beyond the last where a node has none.
+    #[inline]
+    fn place(&self, node: NodeId) -> usize {
+        match self {
+            Self::Consecutive(range) => node.index().wrapping_sub(range.start),
+            Self::Some(nodes) => nodes.binary_search(&node).unwrap_or(usize::MAX),
+        }
+    }
 }
 
 /// The stencil of one node.
@@ -126,37 +168,59 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
-        Self::meeting(surroundings, nearest, params, range, |_| None, &mut |_| {})
+        Self::meeting((surroundings, nearest), params, Kept::Derivatives, range, |_| None, &mut |_| {})
     }
 
     /// As [`Self::new`], the polynomials meeting what is `known` of the gradient at their nodes: their rows hold for values
     /// less the known slope; telling how many nodes are done.
     pub(crate) fn meeting(
-        surroundings: &Surroundings,
-        nearest: &Nearest,
+        around: (&Surroundings, &Nearest),
         params: StarParams,
+        kept: Kept,
         range: Range<usize>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
         observer: &mut dyn FnMut(Event),
     ) -> Self {
-        let of = range.len();
-        let metric = surroundings.metric();
-        let first = range.start;
+        Self::of_numbers(around, params, kept, Numbers::Consecutive(range), known, observer)
+    }
+
+    /// As [`Self::new`] of the given nodes, ascending, meeting what is `known` of their gradients.
+    pub(crate) fn of_some(
+        around: (&Surroundings, &Nearest),
+        params: StarParams,
+        nodes: Vec<NodeId>,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+    ) -> Self {
+        Self::of_numbers(around, params, Kept::Derivatives, Numbers::Some(nodes), known, &mut |_| {})
+    }
+
+    fn of_numbers(
+        (surroundings, nearest): (&Surroundings, &Nearest),
+        params: StarParams,
+        kept: Kept,
+        numbers: Numbers,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+        observer: &mut dyn FnMut(Event),
+    ) -> Self {
+        let n = numbers.len();
+        let empty = |n: usize| {
+            let mut empty = Self::empty(params, surroundings.metric());
+            empty.kept = kept;
+            empty.reserve(n);
+            empty
+        };
         let part = |piece: Range<usize>| {
-            let mut finder = StarFinder::new(surroundings, nearest, params.choice);
-            let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-            let mut part = Self::empty(params, metric, piece.start);
-            for node in piece {
-                let node = NodeId::of(node);
-                part.known.extend(known(node).map(|known| (node, known)));
-                let demand = part.demand(surroundings, node, params.size);
-                let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
-                part.push(&star, &mut mwls, outcome);
-            }
+            let mut part = empty(piece.len());
+            let nodes = piece.map(|place| numbers.node(place));
+            let known: BTreeMap<_, _> = nodes.clone().filter_map(|node| Some((node, known(node)?))).collect();
+            let mut stars = SoundStars::new(surroundings, nearest, params.choice);
+            let demand = |node: NodeId| demand_of(params, surroundings, node, known.get(&node), params.size);
+            stars.each(nodes, demand, part.wanted(), |star| part.push(&star));
+            part.known = known;
             part
         };
-        let mut all = Self::empty(params, metric, first);
-        take_pieces(range, PIECE, part, |part: Self| {
+        let mut all = empty(n);
+        take_pieces(0..n, PIECE, part, |part: Self| {
             let offset = all.nodes.len();
             all.starts.extend(part.starts.iter().map(|start| start + offset));
             all.sizes.extend(part.sizes);
@@ -165,32 +229,38 @@ impl Stencils {
             all.radii.extend(part.radii);
             all.outcomes.extend(part.outcomes);
             all.known.extend(part.known);
-            observer(Event::Nodes { done: all.outcomes.len(), of });
+            observer(Event::Nodes { done: all.outcomes.len(), of: n });
         });
+        all.of = numbers;
         all
     }
 
-    /// What the star of a node must carry.
-    fn demand(&self, surroundings: &Surroundings, node: NodeId, size: usize) -> Demand {
-        let StarParams { order, smoothing, .. } = self.params;
-        let known = self.known.get(&node);
-        let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
-        let slopes = known.map_or(Slopes::Free, |known| known.slopes);
-        Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
+    /// Appends a star.
+    fn push(&mut self, star: &SoundStar) {
+        self.starts.push(self.nodes.len());
+        self.sizes.push(star.nodes.len() as u32);
+        self.nodes.extend(star.nodes);
+        self.rows.extend(star.values);
+        self.radii.push(star.radius);
+        self.outcomes.push(star.outcome);
     }
 
-    /// Appends the star that `mwls` holds.
-    fn push(&mut self, star: &[NodeId], mwls: &mut Mwls, outcome: StarOutcome) {
-        let before = self.rows.len();
-        if outcome.order > 0 {
-            mwls.rows(&mut self.rows);
+    /// Makes room for `n` stars of the usual size.
+    fn reserve(&mut self, n: usize) {
+        let entries = n * self.params.size;
+        self.starts.reserve(n);
+        self.sizes.reserve(n);
+        self.nodes.reserve(entries);
+        self.rows.reserve(entries * self.n_rows());
+        self.radii.reserve(n);
+        self.outcomes.reserve(n);
+    }
+
+    fn wanted(&self) -> Wanted<'static> {
+        match self.kept {
+            Kept::Derivatives => Wanted::Rows,
+            Kept::Laplacian => Wanted::Laplacian,
         }
-        self.rows.resize(before + self.n_rows() * star.len(), 0.0);
-        self.starts.push(self.nodes.len());
-        self.sizes.push(star.len() as u32);
-        self.nodes.extend(star);
-        self.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
-        self.outcomes.push(outcome);
     }
 
     /// How the stars are chosen.
@@ -200,23 +270,25 @@ impl Stencils {
 
     /// Rows of a star.
     fn n_rows(&self) -> usize {
-        n_monomials(self.params.order) - self.params.first_row()
+        match self.kept {
+            Kept::Derivatives => n_monomials(self.params.order) - self.params.first_row(),
+            Kept::Laplacian => 1,
+        }
     }
 
     /// Half as many nodes again as the star of `node` has.
     pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
-        (3 * self.sizes[node.index() - self.first] as usize).div_ceil(2)
+        (3 * self.sizes[self.of.place(node)] as usize).div_ceil(2)
     }
 
     /// Gives nodes other stars, of the sizes told at least, each sound as those of [`Self::new`] are.
     pub(crate) fn replace(&mut self, surroundings: &Surroundings, nearest: &Nearest, stars: &[(NodeId, usize)]) {
-        let mut finder = StarFinder::new(surroundings, nearest, self.params.choice);
-        let (mut mwls, mut star) = (Mwls::default(), Vec::new());
+        let mut finder = SoundStars::new(surroundings, nearest, self.params.choice);
         for &(node, size) in stars {
-            let k = node.index() - self.first;
-            let demand = self.demand(surroundings, node, size);
-            let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
-            self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
+            let k = self.of.place(node);
+            let demand = demand_of(self.params, surroundings, node, self.known.get(&node), size);
+            let star = finder.one(node, demand, self.wanted());
+            self.push(&SoundStar { outcome: StarOutcome { enlarged: true, ..star.outcome }, ..star });
             // What was appended takes the place of the node's own.
             self.starts.swap_remove(k);
             self.sizes.swap_remove(k);
@@ -227,7 +299,8 @@ impl Stencils {
 
     /// A constant about each of `n_nodes` nodes, its value: blended, they are the linear interpolant of finite elements.
     pub(crate) fn constants(n_nodes: usize) -> Self {
-        let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain(), 0);
+        let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain());
+        stencils.of = Numbers::Consecutive(0..n_nodes);
         stencils.starts = vec![0; n_nodes];
         stencils.sizes = vec![0; n_nodes];
         stencils.radii = vec![1.0; n_nodes];
@@ -239,7 +312,7 @@ impl Stencils {
     /// # Errors
     /// [`MfdmError::PoorStar`] for the first node whose star does not.
     pub fn require(&self, range: Range<usize>, xy: &[Point], order: usize) -> Result<(), MfdmError> {
-        match range.clone().find(|node| self.outcomes[node - self.first].order < order) {
+        match range.clone().find(|node| self.outcome(NodeId::of(*node)).order < order) {
             Some(node) => {
                 let tried = self.of(NodeId::of(node)).nodes.len();
                 Err(MfdmError::PoorStar { node, at: xy[node], order, tried })
@@ -250,19 +323,15 @@ impl Stencils {
 
     /// What became of the star of a node of the range.
     pub fn outcome(&self, node: NodeId) -> StarOutcome {
-        self.outcomes.get(node.index() - self.first).copied().unwrap_or_default()
+        self.outcomes.get(self.of.place(node)).copied().unwrap_or_default()
     }
 
-    /// Numbers of the nodes that have a stencil.
-    pub fn range(&self) -> Range<usize> {
-        self.first..self.first + self.radii.len()
-    }
-
-    fn empty(params: StarParams, metric: Metric, first: usize) -> Self {
+    fn empty(params: StarParams, metric: Metric) -> Self {
         Self {
             params,
+            kept: Kept::Derivatives,
             metric,
-            first,
+            of: Numbers::Consecutive(0..0),
             starts: Vec::new(),
             sizes: Vec::new(),
             nodes: Vec::new(),
@@ -278,7 +347,8 @@ impl Stencils {
         if self.params.order == 0 {
             return UsedStars::default();
         }
-        UsedStars::new(self.params, self.first, larger, self.known.clone())
+        let first = if self.of.len() > 0 { self.of.node(0).index() } else { 0 };
+        UsedStars::new(self.params, first, larger, self.known.clone())
     }
 
     /// The metric of their coordinates.
@@ -298,7 +368,7 @@ impl Stencils {
 
     /// The stencil of a node of the range.
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
-        let k = node.index() - self.first;
+        let k = self.of.place(node);
         let star = self.starts[k]..self.starts[k] + self.sizes[k] as usize;
         let n_rows = self.n_rows();
         Stencil {
@@ -309,9 +379,31 @@ impl Stencils {
         }
     }
 
+    /// What each node of the star contributes to ∇²u at its centre, times the square of the star's radius.
+    pub(crate) fn laplacian(&self, node: NodeId) -> impl Iterator<Item = (NodeId, f64)> {
+        let Stencil { nodes, rows, .. } = self.of(node);
+        let n = nodes.len();
+        let [s_x, s_y] = self.metric.stretch().map(|stretch| stretch * stretch);
+        let first = |m: usize| (m - self.params.first_row()) * n;
+        let (xx, yy) = match self.kept {
+            Kept::Derivatives => (first(row(2, 0)), first(row(0, 2))),
+            Kept::Laplacian => (0, 0),
+        };
+        let kept = self.kept;
+        nodes.iter().enumerate().map(move |(k, &other)| match kept {
+            Kept::Derivatives => (other, rows[xx + k] * s_x + rows[yy + k] * s_y),
+            Kept::Laplacian => (other, rows[k]),
+        })
+    }
+
     /// What the polynomial of a node meets of its gradient.
     pub(crate) fn known(&self, node: NodeId) -> KnownSlopes {
-        self.known.get(&node).copied().unwrap_or_default()
+        self.known_of(node).unwrap_or_default()
+    }
+
+    /// As [`Self::known`], `None` where nothing is known.
+    pub(crate) fn known_of(&self, node: NodeId) -> Option<KnownSlopes> {
+        self.known.get(&node).copied()
     }
 
     /// What the known slope of a node adds to Σ c·u over its star: Σ c·g·(x_k − x).
@@ -336,4 +428,18 @@ impl Stencils {
         self.outcomes.iter().for_each(|outcome| report.add(outcome, self.params.order));
         report
     }
+}
+
+/// What the star of a node must carry.
+fn demand_of(
+    params: StarParams,
+    surroundings: &Surroundings,
+    node: NodeId,
+    known: Option<&KnownSlopes>,
+    size: usize,
+) -> Demand {
+    let StarParams { order, smoothing, .. } = params;
+    let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
+    let slopes = known.map_or(Slopes::Free, |known| known.slopes);
+    Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
 }
