@@ -29,11 +29,7 @@ const ROOM_REL: f64 = 1.0e-12;
 const AS_FAR_AGAIN: f64 = 1.2;
 
 /// Room for the nodes met by a search that looks once.
-const MET: usize = 1 << PLACE_BITS;
-
-/// Low bits of a squared distance that say where the node is kept: the distance is known to 7e-15 of itself, which is far
-/// below [`TIE_REL`].
-const PLACE_BITS: u32 = 6;
+const MET: usize = 128;
 
 /// Says that a cell has no grid of its own.
 const NO_GRID: u32 = u32::MAX;
@@ -241,29 +237,38 @@ impl<'a> Nearest<'a> {
             return None;
         }
         let within = radius * radius;
-        let (mut keys, mut nodes, mut n) = ([0u64; MET], [0u32; MET], 0);
-        self.visit_all(p, radius, &mut |node, place| {
-            let d2 = distance_squared(p, place);
-            // Always written, but kept only where it is near enough: no branch to guess.
-            keys[n] = d2.to_bits() & !(MET as u64 - 1) | n as u64;
-            nodes[n] = node;
-            n = (n + usize::from(d2 <= within)).min(MET - 1);
+        let (mut squares, mut nodes, mut n) = ([0.0; MET], [0; MET], 0);
+        self.visit_runs(p, radius, &mut |run, places| {
+            if n + run.len() > MET {
+                n = MET; // too many
+                return;
+            }
+            let mut kept = n;
+            for (&node, &place) in run.iter().zip(places) {
+                let d2 = distance_squared(p, place);
+                // Always written, but kept only where it is near enough: no branch to guess.
+                (squares[kept % MET], nodes[kept % MET]) = (d2, node);
+                kept += usize::from(d2 <= within);
+            }
+            n = kept;
         });
-        if n < k || n == MET - 1 {
+        if n < k || n == MET {
             return None;
         }
-        // Squares are not negative: their bits are in the order of the numbers.
-        keys[..n].sort_unstable();
-        let square = |key: u64| f64::from_bits(key & !(MET as u64 - 1));
-        let farthest = square(keys[k - 1]);
-        let tied = tied_square(farthest);
-        if tied > within || n > k && square(keys[k]) <= tied {
+        let [nearer, farther] = if n < 16 {
+            keep_least::<16>(&squares[..n], &mut nodes, k)
+        } else if n < 32 {
+            keep_least::<32>(&squares[..n], &mut nodes, k)
+        } else {
+            keep_least_of_many(&squares[..n], &mut nodes, k)
+        };
+        let tied = tied_square(nearer);
+        if tied > within || farther <= tied {
             return None;
         }
         out.clear();
-        out.extend(keys[..k].iter().map(|key| NodeId(nodes[(key & (MET as u64 - 1)) as usize])));
-        out.sort_unstable();
-        Some(farthest.sqrt())
+        out.extend(nodes[..k].iter().map(|&node| NodeId(node)));
+        Some(nearer.sqrt())
     }
 
     /// Distance of `p` from the nearest node; infinite where there is none.
@@ -309,12 +314,20 @@ impl<'a> Nearest<'a> {
     /// Calls `visit` with every node nearer to `p` than `radius`, and some more.
     #[inline]
     pub(crate) fn visit_all(&self, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+        self.visit_runs(p, radius, &mut |nodes, places| {
+            nodes.iter().zip(places).for_each(|(&node, &place)| visit(node, place));
+        });
+    }
+
+    /// [`Self::visit_all`] in runs of nodes and their places.
+    #[inline]
+    fn visit_runs(&self, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         self.visit(0, p, radius * (1.0 + ROOM_REL), visit);
     }
 
     /// Calls `visit` with every node of the cells that the square of half side `radius` about `p` meets.
     #[inline]
-    fn visit(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+    fn visit(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         let grid = &self.grids[grid as usize];
         let [from, to] = [-radius, radius].map(|r| [grid.column(p[0] + r, 0), grid.column(p[1] + r, 1)]);
         for row in from[1]..=to[1] {
@@ -335,17 +348,66 @@ impl<'a> Nearest<'a> {
 
     /// [`Self::visit`] where it calls itself.
     #[inline(never)]
-    fn visit_nested(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+    fn visit_nested(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         self.visit(grid, p, radius, visit);
     }
 
     /// The nodes of neighbouring cells of one row.
     #[inline]
-    fn visit_entries(&self, cells: std::ops::Range<usize>, visit: &mut impl FnMut(u32, Point)) {
+    fn visit_entries(&self, cells: std::ops::Range<usize>, visit: &mut impl FnMut(&[u32], &[Point])) {
         let range = self.starts[cells.start] as usize..self.starts[cells.end] as usize;
-        let entries = self.entries[range.clone()].iter().zip(&self.places[range]);
-        entries.for_each(|(&node, &place)| visit(node, place));
+        visit(&self.entries[range.clone()], &self.places[range]);
     }
+}
+
+/// Puts the `k` nodes of the least `squares` first, ascending by number, and returns the `k`-th least square and the next
+/// one, infinite where there is none; the same twice where any are equal. There are fewer than `N` squares.
+///
+/// Every square is compared with every other: on so few that takes no longer than sorting them, and no branch is guessed.
+#[inline]
+fn keep_least<const N: usize>(squares: &[f64], nodes: &mut [u32; MET], k: usize) -> [f64; 2] {
+    let mut of = [f64::INFINITY; N];
+    of.iter_mut().zip(squares).for_each(|(of, square)| *of = *square);
+    let mut n_nearer = [0u64; N];
+    for other in of {
+        for (count, &square) in n_nearer.iter_mut().zip(&of) {
+            *count += u64::from(other < square);
+        }
+    }
+    let (mut sorted, mut numbers, mut sum) = ([f64::INFINITY; N], [u32::MAX; N], 0);
+    for ((&square, &count), &node) in squares.iter().zip(&n_nearer).zip(nodes.iter()) {
+        let place = count as usize % N;
+        (sorted[place], numbers[place]) = (square, node);
+        sum += count as usize;
+    }
+    let nearer = sorted[k - 1];
+    if 2 * sum != squares.len() * (squares.len() - 1) {
+        return [nearer, nearer]; // equal squares have one place
+    }
+    numbers[k..].fill(u32::MAX);
+    // The order of unsigned numbers as that of signed ones, which processors compare faster.
+    let signed = numbers.map(|number| (number ^ 1 << 31) as i32);
+    let mut n_smaller = [0u32; N];
+    for other in signed {
+        for (count, &number) in n_smaller.iter_mut().zip(&signed) {
+            *count += u32::from(other < number);
+        }
+    }
+    for (&number, &place) in numbers[..k].iter().zip(&n_smaller) {
+        nodes[place as usize % N] = number;
+    }
+    [nearer, sorted[k]]
+}
+
+/// [`keep_least`] of any number.
+fn keep_least_of_many(squares: &[f64], nodes: &mut [u32; MET], k: usize) -> [f64; 2] {
+    let mut order = [(0.0, 0); MET];
+    let pairs = &mut order[..squares.len()];
+    pairs.iter_mut().zip(squares.iter().zip(nodes.iter())).for_each(|(pair, (&square, &node))| *pair = (square, node));
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    nodes[..k].iter_mut().zip(pairs.iter()).for_each(|(node, pair)| *node = pair.1);
+    nodes[..k].sort_unstable();
+    [pairs[k - 1].0, pairs.get(k).map_or(f64::INFINITY, |pair| pair.0)]
 }
 
 /// The square of (1 + 1e-9) times a distance, from its square.

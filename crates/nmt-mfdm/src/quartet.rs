@@ -28,15 +28,17 @@ pub(crate) struct CentredStar<'a> {
 pub(crate) struct Quartet {
     order: usize,
     n: usize,                       // rows of the longest star; those of the others end in zeros
-    a: Vec<Lanes>,                  // vectors v of the reflections, above them R, column by column
+    offsets: Vec<[Lanes; 2]>,       // from the centres, shape (n,)
+    a: Vec<Lanes>,                  // A, then R in its upper triangle, shape (n, columns)
+    v: Vec<Lanes>,                  // of the reflections: the last n − m of row m, shape (columns, n)
     root_weight: Vec<Lanes>,        // shape (n,)
     beta: [Lanes; MAX_COLUMNS],     // of the reflections
     diagonal: [Lanes; MAX_COLUMNS], // of R
-    inverse: Vec<Lanes>,            // R⁻¹, shape (columns, columns), row by row
+    inverse: Vec<Lanes>,            // R⁻¹, shape (columns, columns)
     radius: Lanes,
     condition: Lanes,
-    work: Vec<Lanes>,          // offsets; then rows one after another, or right sides
-    own: [Lanes; MAX_COLUMNS], // what the centre contributes to each row
+    rows: Vec<Lanes>, // what was asked for, a column for each row of coefficients; or the right side
+    own: [Lanes; MAX_COLUMNS], // what the centre contributes to each row; or the coefficients of the polynomial
 }
 
 impl Quartet {
@@ -67,22 +69,20 @@ impl Quartet {
         self.radius.0[lane]
     }
 
-    /// Offsets from the centres into `work`, x after x, then y after y; the largest of them are the radii.
+    /// Offsets from the centres; the largest of them are the radii.
     fn load(&mut self, places: &[Point], stars: [CentredStar; WIDTH]) {
         let n = stars.iter().map(|star| star.nodes.len()).max().map_or(0, |most| most.saturating_sub(1));
         self.n = n;
-        self.work.clear();
-        self.work.resize(2 * n, Lanes::default());
-        let (xs, ys) = self.work.split_at_mut(n);
+        self.offsets.clear();
+        self.offsets.resize(n, [Lanes::default(); 2]);
         for (lane, CentredStar { nodes, centre }) in stars.into_iter().enumerate() {
             let at = places[nodes[centre].index()];
-            let (before, after) = (&nodes[..centre], &nodes[centre + 1..]);
-            let others = before.iter().chain(after);
-            for ((x, y), other) in xs.iter_mut().zip(ys.iter_mut()).zip(others) {
-                [x.0[lane], y.0[lane]] = sub(places[other.index()], at);
-            }
+            let others = nodes[..centre].iter().chain(&nodes[centre + 1..]);
+            self.offsets.iter_mut().zip(others).for_each(|(offset, other)| {
+                [offset[0].0[lane], offset[1].0[lane]] = sub(places[other.index()], at);
+            });
         }
-        let squares = xs.iter().zip(ys.iter()).map(|(&x, &y)| x * x + y * y);
+        let squares = self.offsets.iter().map(|&[x, y]| x * x + y * y);
         self.radius = squares.fold(Lanes::default(), Lanes::larger).sqrt();
     }
 
@@ -94,15 +94,15 @@ impl Quartet {
 
     /// Weighted monomials in coordinates scaled by the radius.
     fn fill<const C: usize>(&mut self, stars: [CentredStar; WIDTH]) {
-        let n = self.n;
-        self.a.clear();
-        self.a.resize(C * n, Lanes::default());
+        // All of it is overwritten.
+        self.a.resize(C * self.n, Lanes::default());
         self.root_weight.clear();
         let per_length = Lanes::all(1.0) / self.radius;
         let shortest = stars.iter().map(|star| star.nodes.len()).min().unwrap_or(0);
         let order = const { order_of(C) };
-        for i in 0..n {
-            let (h, k) = (self.work[i] * per_length, self.work[n + i] * per_length);
+        let (rows, _) = self.a.as_chunks_mut::<C>();
+        for (i, (row, &[x, y])) in rows.iter_mut().zip(&self.offsets).enumerate() {
+            let (h, k) = (x * per_length, y * per_length);
             let mut root = root_weight(h * h + k * k, order);
             if i + 1 >= shortest {
                 // Rows beyond a star's end weigh nothing.
@@ -110,18 +110,14 @@ impl Quartet {
                 ended.for_each(|lane| root.0[lane] = 0.0);
             }
             self.root_weight.push(root);
-            let mut basis = [Lanes::default(); C];
-            basis[0] = root * h;
-            basis[1] = root * k;
+            row[0] = root * h;
+            row[1] = root * k;
             for degree in 2..=order {
-                let (first, below) = (row(degree, 0) - 1, row(degree - 1, 0) - 1);
+                let (first, below) = (degree * (degree + 1) / 2 - 1, degree * (degree - 1) / 2 - 1);
                 for b in 0..degree {
-                    basis[first + b] = basis[below + b] * h * INVERSE[degree - b];
+                    row[first + b] = row[below + b] * h * INVERSE[degree - b];
                 }
-                basis[first + degree] = basis[below + degree - 1] * k * INVERSE[degree];
-            }
-            for (m, value) in basis.into_iter().enumerate() {
-                self.a[m * n + i] = value;
+                row[first + degree] = row[below + degree - 1] * k * INVERSE[degree];
             }
         }
     }
@@ -129,41 +125,46 @@ impl Quartet {
     /// A = QR.
     fn reflect_columns<const C: usize>(&mut self) {
         let n = self.n;
-        for m in 0..C {
-            let (done, rest) = self.a.split_at_mut((m + 1) * n);
-            let v = &mut done[m * n + m..];
-            let square = dot(v, v);
+        self.v.resize(C * n, Lanes::default());
+        let (rows, _) = self.a.as_chunks_mut::<C>();
+        for (m, all) in self.v.chunks_exact_mut(n).take(C).enumerate() {
+            let (rows, v) = (&mut rows[m..], &mut all[m..]);
+            let mut square = Lanes::default();
+            for (v, row) in v.iter_mut().zip(rows.iter()) {
+                *v = row[m];
+                square += *v * *v;
+            }
             let length = square.sqrt();
             let top = v[0];
             v[0] = top + length.with_sign_of(top);
-            let inverse = Lanes::all(1.0) / (square + length * top.map(f64::abs));
-            self.beta[m] = inverse;
-            for column in rest.chunks_exact_mut(n) {
-                reflect(v, inverse, &mut column[m..]);
-            }
+            self.beta[m] = Lanes::all(1.0) / (square + length * top.map(f64::abs));
             self.diagonal[m] = -length.with_sign_of(top);
+            reflect(v, self.beta[m], rows, m + 1);
         }
     }
 
     /// R⁻¹ and the condition number: ‖R‖·‖R⁻¹‖ in the Frobenius norm, with columns of length 1.
     fn invert<const C: usize>(&mut self) {
-        let n = self.n;
-        let mut inverse = [[Lanes::default(); C]; C];
+        self.inverse.resize(C * C, Lanes::default());
+        let (r, _) = self.a.as_chunks::<C>();
+        let (inverse, _) = self.inverse.as_chunks_mut::<C>();
         let mut squares = [Lanes::default(); C]; // of the lengths of the columns of R
+        let mut over_diagonal = [Lanes::default(); C];
         for j in 0..C {
-            let column = &self.a[j * n..j * n + j];
-            let diagonal = self.diagonal[j];
-            squares[j] = column.iter().fold(diagonal * diagonal, |sum, &r| sum + r * r);
-            let over_diagonal = Lanes::all(1.0) / diagonal;
-            inverse[j][j] = over_diagonal;
-            for i in 0..j {
-                let known = (i..j).fold(Lanes::default(), |sum, k| sum + inverse[i][k] * column[k]);
-                inverse[i][j] = -known * over_diagonal;
-            }
+            over_diagonal[j] = Lanes::all(1.0) / self.diagonal[j];
+            squares[j] = r[..j].iter().fold(self.diagonal[j] * self.diagonal[j], |sum, row| sum + row[j] * row[j]);
         }
         let mut norm = Lanes::default();
         for i in 0..C {
-            norm += squares[i] * (i..C).fold(Lanes::default(), |sum, j| sum + inverse[i][j] * inverse[i][j]);
+            let row = &mut inverse[i];
+            row[i] = over_diagonal[i];
+            let mut square = row[i] * row[i];
+            for j in i + 1..C {
+                let known = (i..j).fold(Lanes::default(), |sum, k| sum + row[k] * r[k][j]);
+                row[j] = -known * over_diagonal[j];
+                square += row[j] * row[j];
+            }
+            norm += squares[i] * square;
         }
         self.condition = (norm * C as f64).sqrt();
         // The columns of h and k alone have the lengths that tell a line.
@@ -172,8 +173,6 @@ impl Quartet {
                 self.condition.0[lane] = f64::INFINITY;
             }
         }
-        self.inverse.clear();
-        inverse.iter().for_each(|row| self.inverse.extend(row));
     }
 
     /// Computes the rows of all derivatives.
@@ -207,55 +206,66 @@ impl Quartet {
     }
 
     fn all_rows<const C: usize>(&mut self) {
-        let n = self.n;
-        self.work.clear();
-        self.work.resize(C * n, Lanes::default());
-        for m in 0..C {
-            self.work[m * n + m..m * n + C].copy_from_slice(&self.inverse[m * C + m..(m + 1) * C]);
-            self.row_from_start::<C>(m);
+        self.start::<C>();
+        let (inverse, _) = self.inverse.as_chunks::<C>();
+        let (rows, _) = self.rows.as_chunks_mut::<C>();
+        for (j, row) in rows[..C].iter_mut().enumerate() {
+            (0..=j).for_each(|m| row[m] = inverse[m][j]);
         }
+        self.finish::<C, C>();
     }
 
     fn laplacian_row<const C: usize>(&mut self, x: f64, y: f64) {
-        let (xx, yy) = (const { row(2, 0) - 1 }, const { row(0, 2) - 1 });
-        self.work.clear();
-        self.work.resize(self.n, Lanes::default());
-        for j in xx..C {
-            self.work[j] = self.inverse[xx * C + j] * x + self.inverse[yy * C + j] * y;
+        self.start::<1>();
+        let (inverse, _) = self.inverse.as_chunks::<C>();
+        for j in XX..C {
+            self.rows[j] = inverse[XX][j] * x;
         }
-        self.row_from_start::<C>(0);
+        for j in YY..C {
+            self.rows[j] += inverse[YY][j] * y;
+        }
+        self.finish::<C, 1>();
     }
 
-    /// From R⁻ᵀc the row of the functional c, with √w; in place, row number `m` of `work`.
-    fn row_from_start<const C: usize>(&mut self, m: usize) {
+    /// Room for `M` rows of coefficients, all 0.
+    fn start<const M: usize>(&mut self) {
+        self.rows.clear();
+        self.rows.resize(M * self.n, Lanes::default());
+    }
+
+    /// From the R⁻ᵀc in `rows` the rows of the functionals c.
+    fn finish<const C: usize, const M: usize>(&mut self) {
         let n = self.n;
-        let row = &mut self.work[m * n..(m + 1) * n];
-        for k in (0..C).rev() {
-            reflect(&self.a[k * n + k..(k + 1) * n], self.beta[k], &mut row[k..]);
+        let (rows, _) = self.rows.as_chunks_mut::<M>();
+        for m in (0..C).rev() {
+            reflect(&self.v[m * n + m..(m + 1) * n], self.beta[m], &mut rows[m..], 0);
         }
-        let mut sum = Lanes::default();
-        for (value, &root) in row.iter_mut().zip(&self.root_weight) {
-            *value *= root;
-            sum += *value;
+        let mut sums = [Lanes::default(); M];
+        for (row, &root) in rows.iter_mut().zip(&self.root_weight) {
+            for m in 0..M {
+                row[m] *= root;
+                sums[m] += row[m];
+            }
         }
-        self.own[m] = -sum;
+        self.own[..M].iter_mut().zip(sums).for_each(|(own, sum)| *own = -sum);
     }
 
     fn fit_columns<const C: usize>(&mut self, values: &[f64], stars: [CentredStar; WIDTH]) {
         let n = self.n;
-        self.work.clear();
-        self.work.resize(n, Lanes::default());
+        self.start::<1>();
         for (lane, CentredStar { nodes, centre }) in stars.into_iter().enumerate() {
             let own = values[nodes[centre].index()];
             let others = nodes[..centre].iter().chain(&nodes[centre + 1..]);
-            self.work.iter_mut().zip(others).for_each(|(b, other)| b.0[lane] = values[other.index()] - own);
+            self.rows.iter_mut().zip(others).for_each(|(b, other)| b.0[lane] = values[other.index()] - own);
         }
-        self.work.iter_mut().zip(&self.root_weight).for_each(|(b, &root)| *b *= root);
+        self.rows.iter_mut().zip(&self.root_weight).for_each(|(b, &root)| *b *= root);
+        let (right, _) = self.rows.as_chunks_mut::<1>();
         for m in 0..C {
-            reflect(&self.a[m * n + m..(m + 1) * n], self.beta[m], &mut self.work[m..]);
+            reflect(&self.v[m * n + m..(m + 1) * n], self.beta[m], &mut right[m..], 0);
         }
+        let (inverse, _) = self.inverse.as_chunks::<C>();
         for m in 0..C {
-            self.own[m] = dot(&self.inverse[m * C + m..(m + 1) * C], &self.work[m..C]);
+            self.own[m] = (m..C).fold(Lanes::default(), |sum, j| sum + inverse[m][j] * right[j][0]);
         }
     }
 
@@ -264,15 +274,22 @@ impl Quartet {
         self.own[m].0[lane]
     }
 
-    /// Appends the first `n_rows` rows of the star in a lane: row after row, a coefficient for each of its nodes.
-    pub fn append_rows(&self, lane: usize, star: CentredStar, n_rows: usize, out: &mut Vec<f64>) {
-        let (n, centre) = (self.n, star.centre);
-        for m in 0..n_rows {
-            let row = &self.work[m * n..m * n + star.nodes.len() - 1];
-            let (before, after) = row.split_at(centre);
-            out.extend(before.iter().map(|value| value.0[lane]));
-            out.push(self.own[m].0[lane]);
-            out.extend(after.iter().map(|value| value.0[lane]));
+    /// Copies the rows of the star in a lane that [`Self::rows`] made, or the one of [`Self::laplacian`], into `out`: row
+    /// after row, a coefficient for each of its nodes.
+    pub fn copy_rows(&self, lane: usize, star: CentredStar, out: &mut Vec<f64>) {
+        let n_star = star.nodes.len();
+        let n_rows = if self.n > 0 { self.rows.len() / self.n } else { 0 };
+        out.resize(n_rows * n_star, 0.0);
+        for (m, row) in out.chunks_exact_mut(n_star).enumerate() {
+            let (before, rest) = row.split_at_mut(star.centre);
+            let mut coefficients = self.rows.iter().skip(m).step_by(n_rows);
+            for (own, coefficient) in before.iter_mut().zip(coefficients.by_ref()) {
+                *own = coefficient.0[lane];
+            }
+            rest[0] = self.own[m].0[lane];
+            for (own, coefficient) in rest[1..].iter_mut().zip(coefficients) {
+                *own = coefficient.0[lane];
+            }
         }
     }
 
@@ -281,6 +298,10 @@ impl Quartet {
         out.iter_mut().zip(&self.own).for_each(|(out, own)| *out = own.0[lane]);
     }
 }
+
+/// Columns of ∂²/∂x² and ∂²/∂y².
+const XX: usize = row(2, 0) - 1;
+const YY: usize = row(0, 2) - 1;
 
 /// The order whose monomials but the constant are `columns`.
 const fn order_of(columns: usize) -> usize {
@@ -303,16 +324,38 @@ fn root_weight(square: Lanes, order: usize) -> Lanes {
     Lanes::all(1.0) / power
 }
 
+/// X ← (I − β v vᵀ)·X in the columns from number `first` on.
 #[inline(always)]
-fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
-    a.iter().zip(b).fold(Lanes::default(), |sum, (&x, &y)| sum + x * y)
+fn reflect<const C: usize>(v: &[Lanes], beta: Lanes, x: &mut [[Lanes; C]], first: usize) {
+    let mut column = first;
+    while column + 5 <= C {
+        reflect_some::<C, 5>(v, beta, x, column);
+        column += 5;
+    }
+    match C - column {
+        1 => reflect_some::<C, 1>(v, beta, x, column),
+        2 => reflect_some::<C, 2>(v, beta, x, column),
+        3 => reflect_some::<C, 3>(v, beta, x, column),
+        4 => reflect_some::<C, 4>(v, beta, x, column),
+        _ => {}
+    }
 }
 
-/// x ← (I − β v vᵀ) x.
+/// [`reflect`] in `S` columns at a time, whose products stay in registers.
 #[inline(always)]
-fn reflect(v: &[Lanes], beta: Lanes, x: &mut [Lanes]) {
-    let projection = beta * dot(v, x);
-    x.iter_mut().zip(v).for_each(|(x, &v)| *x -= projection * v);
+fn reflect_some<const C: usize, const S: usize>(v: &[Lanes], beta: Lanes, x: &mut [[Lanes; C]], first: usize) {
+    let mut products = [Lanes::default(); S];
+    for (row, &v) in x.iter().zip(v) {
+        if let Some(row) = row[first..].first_chunk::<S>() {
+            (0..S).for_each(|s| products[s] += v * row[s]);
+        }
+    }
+    products.iter_mut().for_each(|product| *product *= beta);
+    for (row, &v) in x.iter_mut().zip(v) {
+        if let Some(row) = row[first..].first_chunk_mut::<S>() {
+            (0..S).for_each(|s| row[s] -= v * products[s]);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -372,11 +415,11 @@ mod tests {
             quartet.factorise(&places, four, order);
             quartet.rows();
             let mut rows = [(); WIDTH].map(|()| Vec::new());
-            (0..WIDTH).for_each(|lane| quartet.append_rows(lane, four[lane], quartet.n_columns(), &mut rows[lane]));
+            (0..WIDTH).for_each(|lane| quartet.copy_rows(lane, four[lane], &mut rows[lane]));
             let stretch = [2.0, 3.0];
             let mut laplacians = [(); WIDTH].map(|()| Vec::new());
             quartet.laplacian(stretch);
-            (0..WIDTH).for_each(|lane| quartet.append_rows(lane, four[lane], 1, &mut laplacians[lane]));
+            (0..WIDTH).for_each(|lane| quartet.copy_rows(lane, four[lane], &mut laplacians[lane]));
             quartet.fit(&values, four);
             for (lane, (centre, nodes)) in stars.iter().enumerate() {
                 let (mwls, expected, fit) = alone(&places, nodes, *centre, order, &values);
@@ -424,7 +467,7 @@ mod tests {
             let (mut quartet, mut rows) = (Quartet::default(), Vec::new());
             quartet.factorise(&places, stars, 2);
             quartet.rows();
-            quartet.append_rows(lane, one, 5, &mut rows);
+            quartet.copy_rows(lane, one, &mut rows);
             rows
         };
         let alone = rows_in([one; WIDTH], 0);

@@ -188,11 +188,10 @@ impl<'a> SoundStars<'a> {
     /// Copies what was computed of a member into `values`.
     fn copy(&mut self, lane: usize, centre: usize, wanted: Wanted) {
         let star = CentredStar { nodes: &self.stars[lane], centre };
-        self.values.clear();
         match wanted {
-            Wanted::Rows => self.quartet.append_rows(lane, star, self.quartet.n_columns(), &mut self.values),
-            Wanted::Laplacian => self.quartet.append_rows(lane, star, 1, &mut self.values),
+            Wanted::Rows | Wanted::Laplacian => self.quartet.copy_rows(lane, star, &mut self.values),
             Wanted::Polynomial(of) => {
+                self.values.clear();
                 self.values.resize(self.quartet.n_columns() + 1, of[star.nodes[centre].index()]);
                 self.quartet.fitted(lane, &mut self.values[1..]);
             }

@@ -2,7 +2,7 @@
 
 use crate::surroundings::Surroundings;
 use nmt_cloud::{Nearest, Scratch};
-use nmt_geom::point::{distance, distance_squared, sub};
+use nmt_geom::point::{distance_squared, sub};
 use nmt_geom::{NodeId, Point};
 use std::f64::consts::FRAC_PI_8;
 
@@ -213,7 +213,8 @@ impl Clear {
 
     /// [`Surroundings::all_visible`].
     fn all_visible(&mut self, surroundings: &Surroundings, at: Point, radius: f64) -> bool {
-        if distance(at, self.at) + radius < self.radius * (1.0 - SAME_DISTANCE_REL) {
+        let room = self.radius * (1.0 - SAME_DISTANCE_REL) - radius;
+        if room > 0.0 && distance_squared(at, self.at) < room * room {
             return true;
         }
         if self.crowded == 0 {

@@ -3,11 +3,11 @@
 use crate::basis::{n_monomials, row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
-use crate::parallel::take_pieces;
+use crate::parallel::{BATCH, map_owned};
 use crate::repair::{Demand, StarOutcome};
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
-use crate::sound_stars::{SoundStar, SoundStars, Wanted};
+use crate::sound_stars::{SoundStars, Wanted};
 use crate::star::StarChoice;
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Stars per piece of work.
-const PIECE: usize = 256;
+const PIECE: usize = 512;
 
 /// Order, size and choice of stars.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,15 +94,73 @@ pub(crate) enum Kept {
 pub struct Stencils {
     params: StarParams,
     kept: Kept,
+    size: usize, // nodes in most stars
     metric: Metric,
     of: Numbers,
     starts: Vec<usize>, // first star entry of each node, shape (n,)
     sizes: Vec<u32>,    // nodes in each star, shape (n,)
-    nodes: Vec<NodeId>, // star after star, each ascending; those of mended stars at the end, their first ones left
+    nodes: Vec<NodeId>, // star after star, each ascending; those of another size than most at the end, their first ones left
     rows: Vec<f64>,     // for a star of m nodes, its rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
-    outcomes: Vec<StarOutcome>,
+    outcomes: Vec<Outcome>,
     known: BTreeMap<NodeId, KnownSlopes>, // of nodes whose gradient is known in part
+}
+
+impl Kept {
+    fn wanted(self) -> Wanted<'static> {
+        match self {
+            Self::Derivatives => Wanted::Rows,
+            Self::Laplacian => Wanted::Laplacian,
+        }
+    }
+}
+
+/// [`StarOutcome`] in 16 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outcome {
+    condition: f64,
+    hidden: u32,
+    order: u8,
+    enlarged: bool,
+    wrong_sign: bool,
+}
+
+impl From<StarOutcome> for Outcome {
+    fn from(outcome: StarOutcome) -> Self {
+        let StarOutcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
+        Self { condition, hidden: u32::try_from(hidden).unwrap_or(u32::MAX), order: order as u8, enlarged, wrong_sign }
+    }
+}
+
+impl From<Outcome> for StarOutcome {
+    fn from(outcome: Outcome) -> Self {
+        let Outcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
+        Self { order: order.into(), enlarged, hidden: hidden as usize, condition, wrong_sign }
+    }
+}
+
+/// The part of [`Stencils`] that one piece of work fills.
+struct Piece<'a> {
+    first: usize, // place of its first node
+    nodes: &'a mut [NodeId],
+    rows: &'a mut [f64],
+    sizes: &'a mut [u32],
+    radii: &'a mut [f64],
+    outcomes: &'a mut [Outcome],
+}
+
+/// What does not fit there.
+struct Filled {
+    n: usize,
+    others: Vec<Other>,
+    known: BTreeMap<NodeId, KnownSlopes>,
+}
+
+/// A star of another size than most.
+struct Other {
+    place: usize,
+    nodes: Vec<NodeId>,
+    rows: Vec<f64>,
 }
 
 /// Which nodes have stencils.
@@ -203,64 +261,87 @@ impl Stencils {
         observer: &mut dyn FnMut(Event),
     ) -> Self {
         let n = numbers.len();
-        let empty = |n: usize| {
-            let mut empty = Self::empty(params, surroundings.metric());
-            empty.kept = kept;
-            empty.reserve(n);
-            empty
-        };
-        let part = |piece: Range<usize>| {
-            let mut part = empty(piece.len());
-            let nodes = piece.map(|place| numbers.node(place));
+        let mut all = Self::empty(params, surroundings.metric());
+        (all.kept, all.size, all.of) = (kept, params.size, numbers);
+        let n_rows = all.n_rows();
+        all.nodes = vec![NodeId(0); n * all.size];
+        all.rows = vec![0.0; n * n_rows * all.size];
+        all.starts = (0..n).map(|k| k * params.size).collect();
+        all.sizes = vec![0; n];
+        all.radii = vec![0.0; n];
+        all.outcomes = vec![Outcome::default(); n];
+        let size = all.size.max(1);
+        let mut pieces = (0..n)
+            .step_by(PIECE)
+            .zip(all.nodes.chunks_mut(PIECE * size))
+            .zip(all.rows.chunks_mut(PIECE * size * n_rows))
+            .zip(all.sizes.chunks_mut(PIECE))
+            .zip(all.radii.chunks_mut(PIECE))
+            .zip(all.outcomes.chunks_mut(PIECE))
+            .map(|(((((first, nodes), rows), sizes), radii), outcomes)| Piece {
+                first,
+                nodes,
+                rows,
+                sizes,
+                radii,
+                outcomes,
+            });
+        let of = &all.of;
+        let fill = |piece: Piece| {
+            let mut finder = SoundStars::new(surroundings, nearest, params.choice);
+            let nodes = (piece.first..piece.first + piece.sizes.len()).map(|place| of.node(place));
             let known: BTreeMap<_, _> = nodes.clone().filter_map(|node| Some((node, known(node)?))).collect();
-            let mut stars = SoundStars::new(surroundings, nearest, params.choice);
             let demand = |node: NodeId| demand_of(params, surroundings, node, known.get(&node), params.size);
-            stars.each(nodes, demand, part.wanted(), |star| part.push(&star));
-            part.known = known;
-            part
+            let (mut k, mut others) = (0, Vec::new());
+            finder.each(nodes, demand, kept.wanted(), |star| {
+                piece.sizes[k] = star.nodes.len() as u32;
+                piece.radii[k] = star.radius;
+                piece.outcomes[k] = Outcome::from(star.outcome);
+                if star.nodes.len() == size {
+                    piece.nodes[k * size..(k + 1) * size].copy_from_slice(star.nodes);
+                    piece.rows[k * size * n_rows..(k + 1) * size * n_rows].copy_from_slice(star.values);
+                } else {
+                    others.push(Other {
+                        place: piece.first + k,
+                        nodes: star.nodes.to_vec(),
+                        rows: star.values.to_vec(),
+                    });
+                }
+                k += 1;
+            });
+            Filled { n: k, others, known }
         };
-        let mut all = empty(n);
-        take_pieces(0..n, PIECE, part, |part: Self| {
-            let offset = all.nodes.len();
-            all.starts.extend(part.starts.iter().map(|start| start + offset));
-            all.sizes.extend(part.sizes);
-            all.nodes.extend(part.nodes);
-            all.rows.extend(part.rows);
-            all.radii.extend(part.radii);
-            all.outcomes.extend(part.outcomes);
-            all.known.extend(part.known);
-            observer(Event::Nodes { done: all.outcomes.len(), of: n });
-        });
-        all.of = numbers;
+        let (mut done, mut others, mut all_known) = (0, Vec::new(), BTreeMap::new());
+        loop {
+            let batch: Vec<Piece> = pieces.by_ref().take(BATCH).collect();
+            if batch.is_empty() {
+                break;
+            }
+            for filled in map_owned(batch, fill) {
+                done += filled.n;
+                others.extend(filled.others);
+                all_known.extend(filled.known);
+            }
+            observer(Event::Nodes { done, of: n });
+        }
+        drop(pieces);
+        // Stars of another size than most follow those.
+        all.nodes.reserve_exact(others.iter().map(|other: &Other| other.nodes.len()).sum());
+        all.rows.reserve_exact(others.iter().map(|other| other.rows.len()).sum());
+        for Other { place, nodes, rows } in others {
+            all.append(place, &nodes, &rows);
+        }
+        all.known = all_known;
         all
     }
 
-    /// Appends a star.
-    fn push(&mut self, star: &SoundStar) {
-        self.starts.push(self.nodes.len());
-        self.sizes.push(star.nodes.len() as u32);
-        self.nodes.extend(star.nodes);
-        self.rows.extend(star.values);
-        self.radii.push(star.radius);
-        self.outcomes.push(star.outcome);
-    }
-
-    /// Makes room for `n` stars of the usual size.
-    fn reserve(&mut self, n: usize) {
-        let entries = n * self.params.size;
-        self.starts.reserve(n);
-        self.sizes.reserve(n);
-        self.nodes.reserve(entries);
-        self.rows.reserve(entries * self.n_rows());
-        self.radii.reserve(n);
-        self.outcomes.reserve(n);
-    }
-
-    fn wanted(&self) -> Wanted<'static> {
-        match self.kept {
-            Kept::Derivatives => Wanted::Rows,
-            Kept::Laplacian => Wanted::Laplacian,
-        }
+    /// Gives the node at a place another star; that it had is left.
+    fn append(&mut self, place: usize, nodes: &[NodeId], rows: &[f64]) {
+        // Rows begin where nodes do.
+        self.starts[place] = self.nodes.len();
+        self.sizes[place] = nodes.len() as u32;
+        self.nodes.extend(nodes);
+        self.rows.extend(rows);
     }
 
     /// How the stars are chosen.
@@ -287,13 +368,10 @@ impl Stencils {
         for &(node, size) in stars {
             let k = self.of.place(node);
             let demand = demand_of(self.params, surroundings, node, self.known.get(&node), size);
-            let star = finder.one(node, demand, self.wanted());
-            self.push(&SoundStar { outcome: StarOutcome { enlarged: true, ..star.outcome }, ..star });
-            // What was appended takes the place of the node's own.
-            self.starts.swap_remove(k);
-            self.sizes.swap_remove(k);
-            self.radii.swap_remove(k);
-            self.outcomes.swap_remove(k);
+            let star = finder.one(node, demand, self.kept.wanted());
+            self.radii[k] = star.radius;
+            self.outcomes[k] = Outcome::from(StarOutcome { enlarged: true, ..star.outcome });
+            self.append(k, star.nodes, star.values);
         }
     }
 
@@ -323,13 +401,14 @@ impl Stencils {
 
     /// What became of the star of a node of the range.
     pub fn outcome(&self, node: NodeId) -> StarOutcome {
-        self.outcomes.get(self.of.place(node)).copied().unwrap_or_default()
+        self.outcomes.get(self.of.place(node)).copied().map(StarOutcome::from).unwrap_or_default()
     }
 
     fn empty(params: StarParams, metric: Metric) -> Self {
         Self {
             params,
             kept: Kept::Derivatives,
+            size: params.size,
             metric,
             of: Numbers::Consecutive(0..0),
             starts: Vec::new(),
@@ -425,7 +504,7 @@ impl Stencils {
     pub fn report(&self) -> StarReport {
         let mut report = StarReport { size: self.params.size, ..StarReport::default() };
         // Constants have no stars.
-        self.outcomes.iter().for_each(|outcome| report.add(outcome, self.params.order));
+        self.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), self.params.order));
         report
     }
 }
