@@ -278,7 +278,7 @@ impl Quartet {
     /// after row, a coefficient for each of its nodes.
     pub fn copy_rows(&self, lane: usize, star: CentredStar, out: &mut Vec<f64>) {
         let n_star = star.nodes.len();
-        let n_rows = if self.n > 0 { self.rows.len() / self.n } else { 0 };
+        let n_rows = self.rows.len().checked_div(self.n).unwrap_or(0);
         out.resize(n_rows * n_star, 0.0);
         for (m, row) in out.chunks_exact_mut(n_star).enumerate() {
             let (before, rest) = row.split_at_mut(star.centre);
