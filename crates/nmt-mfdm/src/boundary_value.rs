@@ -1,6 +1,7 @@
 //! A boundary value problem −∇²u = s on a mesh: stencils → system → nodal values → recovered field.
 
 use crate::assembly::Frame;
+use crate::batches::{self, Batched};
 use crate::blend::NodalPolynomials;
 use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
@@ -69,53 +70,27 @@ pub(crate) fn solve_discrete(
     let n_nodes = mesh.cloud().n_nodes();
     let roles = roles(conditions, mesh, params);
 
-    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
-    let kept = match params.formulation {
-        Formulation::Local if interpolates(params) => Kept::Laplacian,
-        _ => Kept::Derivatives,
-    };
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, kept, observer)?;
-    observer(Event::Ended(Stage::Stencils));
-
-    let rule = params.rule()?;
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
-    let source_rule = source_rule(params);
+    let (rule, source_rule) = (params.rule()?, source_rule(params));
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let mended = mended_system(frame, around, params, &rule, &mut stencils)?;
-    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
-    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
-    let setting = frame.with(&stencils);
-    let space = TrialSpace {
-        kind: params.trial,
-        mesh,
-        stencils: &stencils,
-        surroundings: &surroundings,
-        nearest: &nearest,
-        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+    let assembled = if is_batched(params) {
+        let stars = params.star_params(n_nodes, &metric)?;
+        // Stars are found along with the equations.
+        observer(Event::Ended(Stage::Stencils));
+        let Batched { mut system, equations, stars, used_stars } =
+            batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
+        steady(frame, (&surroundings, &nearest), params.order, &mut system);
+        Assembled { system, equations, stars, used_stars, smoothing: None }
+    } else {
+        assemble_at_once(
+            frame,
+            Around { mesh, surroundings: &surroundings, nearest: &nearest },
+            params,
+            &rule,
+            observer,
+        )?
     };
-    // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
-    let of_holes = (kept == Kept::Laplacian).then(|| {
-        let nodes = nodes_of_equations(mesh, &node_tris, &roles, params.formulation);
-        Stencils::of_some((&surroundings, &nearest), stencils.params(), nodes, |node| stencils.known_of(node))
-    });
-    let weak = match params.formulation {
-        Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
-        Formulation::Local | Formulation::Fem => {
-            WeakForm::blended(mesh, of_holes.as_ref().unwrap_or(&stencils), fluxes, &rule)
-        }
-    };
-    let system = match (mended, params.formulation, params.test) {
-        (Some(system), _, _) => system,
-        (None, Formulation::Local, _) => local::assemble(&setting)?,
-        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
-        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
-            variational::assemble(&setting, &weak)?
-        }
-    };
-    let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
-    drop(weak);
-    // Rows are the larger part of what is held; only smoothing needs them again.
-    let stencils = (!interpolates(params)).then_some(stencils);
+    let Assembled { system, equations, stars, used_stars, smoothing: stencils } = assembled;
     observer(Event::Ended(Stage::Assemble));
 
     let Nodal { values, constants, linear } =
@@ -136,6 +111,72 @@ pub(crate) fn solve_discrete(
         NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
+}
+
+/// What the linear solver and the results take.
+struct Assembled {
+    system: LinearSystem,
+    /// Of the holes' constants.
+    equations: Vec<Equation>,
+    stars: StarReport,
+    used_stars: UsedStars,
+    /// Of polynomials that smooth: they make the nodal values from the solution.
+    smoothing: Option<Stencils>,
+}
+
+/// All stencils, then all equations.
+fn assemble_at_once(
+    frame: Frame,
+    around: Around,
+    params: &SolveParams,
+    rule: &Rule,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Assembled, MfdmError> {
+    let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
+    let Around { surroundings, nearest, .. } = around;
+    let kept = match params.formulation {
+        Formulation::Local if interpolates(params) => Kept::Laplacian,
+        _ => Kept::Derivatives,
+    };
+    let mut stencils = stencils_of_equations(around, roles, fluxes, params, kept, observer)?;
+    observer(Event::Ended(Stage::Stencils));
+
+    let mended = mended_system(frame, around, params, rule, &mut stencils)?;
+    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
+    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
+    let setting = frame.with(&stencils);
+    let space = TrialSpace {
+        kind: params.trial,
+        mesh,
+        stencils: &stencils,
+        surroundings: surroundings,
+        nearest: nearest,
+        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+    };
+    // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
+    let of_holes = (kept == Kept::Laplacian).then(|| {
+        let nodes = nodes_of_equations(mesh, node_tris, roles, params.formulation);
+        Stencils::of_some((surroundings, nearest), stencils.params(), nodes, |node| stencils.known_of(node))
+    });
+    let weak = match params.formulation {
+        Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
+        Formulation::Local | Formulation::Fem => {
+            WeakForm::blended(mesh, of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
+        }
+    };
+    let system = match (mended, params.formulation, params.test) {
+        (Some(system), _, _) => system,
+        (None, Formulation::Local, _) => local::assemble(&setting)?,
+        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
+        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
+            variational::assemble(&setting, &weak)?
+        }
+    };
+    let equations = hole_equations(mesh, &weak, node_tris, roles, params.formulation);
+    drop(weak);
+    // Rows are the larger part of what is held; only smoothing needs them again.
+    let stencils = (!interpolates(params)).then_some(stencils);
+    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -185,6 +226,11 @@ fn interpolates(params: &SolveParams) -> bool {
 fn is_mended(params: &SolveParams) -> bool {
     let form = (params.formulation, params.trial, params.test);
     form == (Formulation::Variational, Trial::Blended, Test::Hat) && interpolates(params)
+}
+
+/// Whether stars are made and dropped batch by batch: their rows are the larger part of what is held.
+fn is_batched(params: &SolveParams) -> bool {
+    is_mended(params) && params.order >= 3
 }
 
 fn roles(conditions: Vec<NodeCondition>, mesh: &Mesh, params: &SolveParams) -> Roles {

@@ -24,6 +24,7 @@
 
 mod assembly;
 mod basis;
+mod batches;
 mod blend;
 mod boundary_value;
 mod circulation;

@@ -359,7 +359,7 @@ impl Stencils {
 
     /// Half as many nodes again as the star of `node` has.
     pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
-        (3 * self.sizes[self.of.place(node)] as usize).div_ceil(2)
+        half_as_many_again(self.sizes[self.of.place(node)])
     }
 
     /// Gives nodes other stars, of the sizes told at least, each sound as those of [`Self::new`] are.
@@ -521,4 +521,9 @@ fn demand_of(
     let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
     let slopes = known.map_or(Slopes::Free, |known| known.slopes);
     Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
+}
+
+/// Half as many nodes again.
+pub(crate) fn half_as_many_again(size: u32) -> usize {
+    (3 * size as usize).div_ceil(2)
 }
