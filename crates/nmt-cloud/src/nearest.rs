@@ -28,6 +28,10 @@ const ROOM_REL: f64 = 1.0e-12;
 /// are as dense, and on irregular clouds that distance changes by a tenth from node to node.
 const AS_FAR_AGAIN: f64 = 1.2;
 
+/// But at most with this multiple of the radius that the density about the place itself suggests: the last search may have
+/// been where nodes are far apart.
+const MOST_OF_OWN: f64 = 2.0;
+
 /// Room for the nodes met by a search that looks once.
 const MET: usize = 128;
 
@@ -229,11 +233,18 @@ impl<'a> Nearest<'a> {
         square.sqrt()
     }
 
+    /// The radius within which the `k` nearest nodes of `p` should be after the last search; 0 where there is no such search.
+    #[inline]
+    fn radius_after(&self, p: Point, k: usize, scratch: &Scratch) -> f64 {
+        let (radius, last_k) = scratch.last;
+        if last_k == k && !self.xy.is_empty() { radius.min(MOST_OF_OWN * self.first_radius(p, k)) } else { 0.0 }
+    }
+
     /// The `k` nearest nodes where the radius of `scratch` holds enough of them, not too many, and no tie decides.
     #[inline]
     fn look_once(&self, p: Point, k: usize, scratch: &Scratch, out: &mut Vec<NodeId>) -> Option<f64> {
-        let (radius, last_k) = scratch.last;
-        if last_k != k || k == 0 || k >= MET || !(radius > 0.0 && radius.is_finite()) {
+        let radius = self.radius_after(p, k, scratch);
+        if k == 0 || k >= MET || !(radius > 0.0 && radius.is_finite()) {
             return None;
         }
         let within = radius * radius;
@@ -517,9 +528,18 @@ mod tests {
         let nearest = Nearest::new(&xy);
         let mut met = 0;
         for p in &xy {
-            nearest.visit(0, *p, nearest.first_radius(*p, 9), &mut |_, _| met += 1);
+            nearest.visit(0, *p, nearest.first_radius(*p, 9), &mut |run, _| met += run.len());
         }
         assert!(met < 80 * xy.len(), "{met}"); // an even cloud: 30
+        // In any order: a search after one where nodes are a thousand times as far apart does not meet them all.
+        let (mut scratch, mut out, mut met) = (Scratch::default(), Vec::new(), 0);
+        for k in 0..xy.len() {
+            let p = xy[k * 7919 % xy.len()];
+            let radius = nearest.radius_after(p, 9, &scratch);
+            nearest.visit(0, p, radius, &mut |run, _| met += run.len());
+            nearest.nearest_of_all(p, 9, &mut scratch, &mut out);
+        }
+        assert!(met < 160 * xy.len(), "{met}");
     }
 
     #[test]

@@ -70,25 +70,26 @@ pub(crate) fn solve_discrete(
     let n_nodes = mesh.cloud().n_nodes();
     let roles = roles(conditions, mesh, params);
 
+    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
+    let stencils = if is_batched(params) {
+        None // stars are found along with the equations
+    } else {
+        Some(stencils_of_equations(around, &roles, fluxes, params, kept(params), observer)?)
+    };
+    observer(Event::Ended(Stage::Stencils));
+
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
     let (rule, source_rule) = (params.rule()?, source_rule(params));
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let assembled = if is_batched(params) {
-        let stars = params.star_params(n_nodes, &metric)?;
-        // Stars are found along with the equations.
-        observer(Event::Ended(Stage::Stencils));
-        let Batched { mut system, equations, stars, used_stars } =
-            batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
-        steady(frame, (&surroundings, &nearest), params.order, &mut system);
-        Assembled { system, equations, stars, used_stars, smoothing: None }
-    } else {
-        assemble_at_once(
-            frame,
-            Around { mesh, surroundings: &surroundings, nearest: &nearest },
-            params,
-            &rule,
-            observer,
-        )?
+    let assembled = match stencils {
+        Some(stencils) => assemble_at_once(frame, around, params, &rule, stencils)?,
+        None => {
+            let stars = params.star_params(n_nodes, &metric)?;
+            let Batched { mut system, equations, stars, used_stars } =
+                batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
+            steady(frame, (&surroundings, &nearest), params.order, &mut system);
+            Assembled { system, equations, stars, used_stars, smoothing: None }
+        }
     };
     let Assembled { system, equations, stars, used_stars, smoothing: stencils } = assembled;
     observer(Event::Ended(Stage::Assemble));
@@ -124,23 +125,16 @@ struct Assembled {
     smoothing: Option<Stencils>,
 }
 
-/// All stencils, then all equations.
+/// All equations from all stencils.
 fn assemble_at_once(
     frame: Frame,
     around: Around,
     params: &SolveParams,
     rule: &Rule,
-    observer: &mut dyn FnMut(Event),
+    mut stencils: Stencils,
 ) -> Result<Assembled, MfdmError> {
     let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
     let Around { surroundings, nearest, .. } = around;
-    let kept = match params.formulation {
-        Formulation::Local if interpolates(params) => Kept::Laplacian,
-        _ => Kept::Derivatives,
-    };
-    let mut stencils = stencils_of_equations(around, roles, fluxes, params, kept, observer)?;
-    observer(Event::Ended(Stage::Stencils));
-
     let mended = mended_system(frame, around, params, rule, &mut stencils)?;
     let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
     let (stars, used_stars) = (stencils.report(), stencils.used(larger));
@@ -149,12 +143,12 @@ fn assemble_at_once(
         kind: params.trial,
         mesh,
         stencils: &stencils,
-        surroundings: surroundings,
-        nearest: nearest,
+        surroundings,
+        nearest,
         params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
     };
     // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
-    let of_holes = (kept == Kept::Laplacian).then(|| {
+    let of_holes = (kept(params) == Kept::Laplacian).then(|| {
         let nodes = nodes_of_equations(mesh, node_tris, roles, params.formulation);
         Stencils::of_some((surroundings, nearest), stencils.params(), nodes, |node| stencils.known_of(node))
     });
@@ -226,6 +220,14 @@ fn interpolates(params: &SolveParams) -> bool {
 fn is_mended(params: &SolveParams) -> bool {
     let form = (params.formulation, params.trial, params.test);
     form == (Formulation::Variational, Trial::Blended, Test::Hat) && interpolates(params)
+}
+
+/// The rows that the equations need of every star.
+fn kept(params: &SolveParams) -> Kept {
+    match params.formulation {
+        Formulation::Local if interpolates(params) => Kept::Laplacian,
+        _ => Kept::Derivatives,
+    }
 }
 
 /// Whether stars are made and dropped batch by batch: their rows are the larger part of what is held.
