@@ -35,7 +35,7 @@ fn all_nearest(bencher: Bencher, xy: &[Point]) {
     bencher.counter(ItemsCount::new(xy.len())).bench_local(|| {
         let (mut scratch, mut out, mut sum) = (Scratch::default(), Vec::new(), 0u64);
         for p in xy {
-            nearest.nearest(*p, 9, |_| true, &mut scratch, &mut out);
+            nearest.nearest_of_all(*p, 9, &mut scratch, &mut out);
             sum += u64::from(out[8].0);
         }
         sum

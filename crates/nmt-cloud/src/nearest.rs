@@ -24,6 +24,17 @@ const EXPECTED: f64 = 1.4;
 /// Room of a look-up by radius, as a fraction: distances are rounded.
 const ROOM_REL: f64 = 1.0e-12;
 
+/// A search begins with this multiple of the distance of the farthest node that the last one found: neighbours' neighbours
+/// are as dense, and on irregular clouds that distance changes by a tenth from node to node.
+const AS_FAR_AGAIN: f64 = 1.2;
+
+/// But at most with this multiple of the radius that the density about the place itself suggests: the last search may have
+/// been where nodes are far apart.
+const MOST_OF_OWN: f64 = 2.0;
+
+/// Room for the nodes met by a search that looks once.
+const MET: usize = 128;
+
 /// Says that a cell has no grid of its own.
 const NO_GRID: u32 = u32::MAX;
 
@@ -84,6 +95,7 @@ impl Grid {
 pub struct Scratch {
     pending: Vec<(f64, u32)>,  // (distance², node) met, not asked about yet
     accepted: Vec<(f64, u32)>, // by distance
+    last: (f64, usize),        // radius to begin with after the last search, and its k
 }
 
 impl<'a> Nearest<'a> {
@@ -161,7 +173,7 @@ impl<'a> Nearest<'a> {
         out: &mut Vec<NodeId>,
     ) {
         out.clear();
-        let Scratch { pending, accepted } = scratch;
+        let Scratch { pending, accepted, .. } = scratch;
         accepted.clear();
         if k == 0 || self.xy.is_empty() {
             return;
@@ -204,6 +216,70 @@ impl<'a> Nearest<'a> {
         }
         out.extend(accepted.iter().map(|(_, node)| NodeId(*node)));
         out.sort_unstable();
+    }
+
+    /// As [`Self::nearest`] where all nodes pass; returns the distance of the farthest in `out`, 0 where there are none.
+    ///
+    /// Most nodes are found by looking once, within a radius that the last search with this `scratch` suggests: quickest
+    /// where searches follow each other from neighbour to neighbour. What is found does not depend on it.
+    pub fn nearest_of_all(&self, p: Point, k: usize, scratch: &mut Scratch, out: &mut Vec<NodeId>) -> f64 {
+        if let Some(farthest) = self.look_once(p, k, scratch, out) {
+            scratch.last = (AS_FAR_AGAIN * farthest, k);
+            return farthest;
+        }
+        self.nearest(p, k, |_| true, scratch, out);
+        let square = out.iter().map(|node| distance_squared(p, self.xy[node.index()])).fold(0.0, f64::max);
+        scratch.last = (AS_FAR_AGAIN * square.sqrt(), k);
+        square.sqrt()
+    }
+
+    /// The radius within which the `k` nearest nodes of `p` should be after the last search; 0 where there is no such search.
+    #[inline]
+    fn radius_after(&self, p: Point, k: usize, scratch: &Scratch) -> f64 {
+        let (radius, last_k) = scratch.last;
+        if last_k == k && !self.xy.is_empty() { radius.min(MOST_OF_OWN * self.first_radius(p, k)) } else { 0.0 }
+    }
+
+    /// The `k` nearest nodes where the radius of `scratch` holds enough of them, not too many, and no tie decides.
+    #[inline]
+    fn look_once(&self, p: Point, k: usize, scratch: &Scratch, out: &mut Vec<NodeId>) -> Option<f64> {
+        let radius = self.radius_after(p, k, scratch);
+        if k == 0 || k >= MET || !(radius > 0.0 && radius.is_finite()) {
+            return None;
+        }
+        let within = radius * radius;
+        let (mut squares, mut nodes, mut n) = ([0.0; MET], [0; MET], 0);
+        self.visit_runs(p, radius, &mut |run, places| {
+            if n + run.len() > MET {
+                n = MET; // too many
+                return;
+            }
+            let mut kept = n;
+            for (&node, &place) in run.iter().zip(places) {
+                let d2 = distance_squared(p, place);
+                // Always written, but kept only where it is near enough: no branch to guess.
+                (squares[kept % MET], nodes[kept % MET]) = (d2, node);
+                kept += usize::from(d2 <= within);
+            }
+            n = kept;
+        });
+        if n < k || n == MET {
+            return None;
+        }
+        let [nearer, farther] = if n < 16 {
+            keep_least::<16>(&squares[..n], &mut nodes, k)
+        } else if n < 32 {
+            keep_least::<32>(&squares[..n], &mut nodes, k)
+        } else {
+            keep_least_of_many(&squares[..n], &mut nodes, k)
+        };
+        let tied = tied_square(nearer);
+        if tied > within || farther <= tied {
+            return None;
+        }
+        out.clear();
+        out.extend(nodes[..k].iter().map(|&node| NodeId(node)));
+        Some(nearer.sqrt())
     }
 
     /// Distance of `p` from the nearest node; infinite where there is none.
@@ -249,12 +325,20 @@ impl<'a> Nearest<'a> {
     /// Calls `visit` with every node nearer to `p` than `radius`, and some more.
     #[inline]
     pub(crate) fn visit_all(&self, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+        self.visit_runs(p, radius, &mut |nodes, places| {
+            nodes.iter().zip(places).for_each(|(&node, &place)| visit(node, place));
+        });
+    }
+
+    /// [`Self::visit_all`] in runs of nodes and their places.
+    #[inline]
+    fn visit_runs(&self, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         self.visit(0, p, radius * (1.0 + ROOM_REL), visit);
     }
 
     /// Calls `visit` with every node of the cells that the square of half side `radius` about `p` meets.
     #[inline]
-    fn visit(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+    fn visit(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         let grid = &self.grids[grid as usize];
         let [from, to] = [-radius, radius].map(|r| [grid.column(p[0] + r, 0), grid.column(p[1] + r, 1)]);
         for row in from[1]..=to[1] {
@@ -275,17 +359,66 @@ impl<'a> Nearest<'a> {
 
     /// [`Self::visit`] where it calls itself.
     #[inline(never)]
-    fn visit_nested(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(u32, Point)) {
+    fn visit_nested(&self, grid: u32, p: Point, radius: f64, visit: &mut impl FnMut(&[u32], &[Point])) {
         self.visit(grid, p, radius, visit);
     }
 
     /// The nodes of neighbouring cells of one row.
     #[inline]
-    fn visit_entries(&self, cells: std::ops::Range<usize>, visit: &mut impl FnMut(u32, Point)) {
+    fn visit_entries(&self, cells: std::ops::Range<usize>, visit: &mut impl FnMut(&[u32], &[Point])) {
         let range = self.starts[cells.start] as usize..self.starts[cells.end] as usize;
-        let entries = self.entries[range.clone()].iter().zip(&self.places[range]);
-        entries.for_each(|(&node, &place)| visit(node, place));
+        visit(&self.entries[range.clone()], &self.places[range]);
     }
+}
+
+/// Puts the `k` nodes of the least `squares` first, ascending by number, and returns the `k`-th least square and the next
+/// one, infinite where there is none; the same twice where any are equal. There are fewer than `N` squares.
+///
+/// Every square is compared with every other: on so few that takes no longer than sorting them, and no branch is guessed.
+#[inline]
+fn keep_least<const N: usize>(squares: &[f64], nodes: &mut [u32; MET], k: usize) -> [f64; 2] {
+    let mut of = [f64::INFINITY; N];
+    of.iter_mut().zip(squares).for_each(|(of, square)| *of = *square);
+    let mut n_nearer = [0u64; N];
+    for other in of {
+        for (count, &square) in n_nearer.iter_mut().zip(&of) {
+            *count += u64::from(other < square);
+        }
+    }
+    let (mut sorted, mut numbers, mut sum) = ([f64::INFINITY; N], [u32::MAX; N], 0);
+    for ((&square, &count), &node) in squares.iter().zip(&n_nearer).zip(nodes.iter()) {
+        let place = count as usize % N;
+        (sorted[place], numbers[place]) = (square, node);
+        sum += count as usize;
+    }
+    let nearer = sorted[k - 1];
+    if 2 * sum != squares.len() * (squares.len() - 1) {
+        return [nearer, nearer]; // equal squares have one place
+    }
+    numbers[k..].fill(u32::MAX);
+    // The order of unsigned numbers as that of signed ones, which processors compare faster.
+    let signed = numbers.map(|number| (number ^ 1 << 31) as i32);
+    let mut n_smaller = [0u32; N];
+    for other in signed {
+        for (count, &number) in n_smaller.iter_mut().zip(&signed) {
+            *count += u32::from(other < number);
+        }
+    }
+    for (&number, &place) in numbers[..k].iter().zip(&n_smaller) {
+        nodes[place as usize % N] = number;
+    }
+    [nearer, sorted[k]]
+}
+
+/// [`keep_least`] of any number.
+fn keep_least_of_many(squares: &[f64], nodes: &mut [u32; MET], k: usize) -> [f64; 2] {
+    let mut order = [(0.0, 0); MET];
+    let pairs = &mut order[..squares.len()];
+    pairs.iter_mut().zip(squares.iter().zip(nodes.iter())).for_each(|(pair, (&square, &node))| *pair = (square, node));
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    nodes[..k].iter_mut().zip(pairs.iter()).for_each(|(node, pair)| *node = pair.1);
+    nodes[..k].sort_unstable();
+    [pairs[k - 1].0, pairs.get(k).map_or(f64::INFINITY, |pair| pair.0)]
 }
 
 /// The square of (1 + 1e-9) times a distance, from its square.
@@ -335,6 +468,30 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn looking_once_finds_what_the_careful_search_finds(
+            nodes in prop::collection::vec(prop::array::uniform2(0i32..9), 0..80),
+            scatter in prop::collection::vec(prop::array::uniform2(0.0..9.0f64), 1..160),
+            centres in prop::collection::vec(prop::array::uniform2(-2.0..11.0f64), 1..20),
+            k in 0usize..70,
+        ) {
+            let mut xy: Vec<Point> = nodes.iter().map(|n| n.map(f64::from)).collect();
+            xy.extend(&scatter);
+            let nearest = Nearest::new(&xy);
+            let (mut scratch, mut found, mut expected) = (Scratch::default(), Vec::new(), Vec::new());
+            // The centres follow each other as they come: the radius of the last one may be far too small or large.
+            for (number, p) in centres.iter().chain(xy.iter().take(40)).enumerate() {
+                let k = if number % 5 == 4 { k / 2 } else { k };
+                let farthest = nearest.nearest_of_all(*p, k, &mut scratch, &mut found);
+                nearest.nearest(*p, k, |_| true, &mut Scratch::default(), &mut expected);
+                prop_assert_eq!(&found, &expected);
+                let distance = expected.iter().map(|node| distance_squared(*p, xy[node.index()])).fold(0.0, f64::max).sqrt();
+                prop_assert!((farthest - distance).abs() <= 1e-14 * distance, "{} {}", farthest, distance);
+            }
+        }
+    }
+
     #[test]
     fn clouds_of_very_uneven_density_are_searched_as_even_ones() {
         // Spacing 1 : 10⁶, a dense line, a far outlier, and twenty nodes at one place.
@@ -371,9 +528,18 @@ mod tests {
         let nearest = Nearest::new(&xy);
         let mut met = 0;
         for p in &xy {
-            nearest.visit(0, *p, nearest.first_radius(*p, 9), &mut |_, _| met += 1);
+            nearest.visit(0, *p, nearest.first_radius(*p, 9), &mut |run, _| met += run.len());
         }
         assert!(met < 80 * xy.len(), "{met}"); // an even cloud: 30
+        // In any order: a search after one where nodes are a thousand times as far apart does not meet them all.
+        let (mut scratch, mut out, mut met) = (Scratch::default(), Vec::new(), 0);
+        for k in 0..xy.len() {
+            let p = xy[k * 7919 % xy.len()];
+            let radius = nearest.radius_after(p, 9, &scratch);
+            nearest.visit(0, p, radius, &mut |run, _| met += run.len());
+            nearest.nearest_of_all(p, 9, &mut scratch, &mut out);
+        }
+        assert!(met < 160 * xy.len(), "{met}");
     }
 
     #[test]

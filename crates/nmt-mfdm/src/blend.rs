@@ -7,11 +7,11 @@
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::error::MfdmError;
 use crate::gauss::{Rule, seven_points, six_points};
-use crate::mwls::{Mwls, dot};
+use crate::mwls::dot;
 use crate::parallel::{CHUNK, map_chunks, take_pieces};
-use crate::repair::{Demand, sound_star};
+use crate::repair::Demand;
 use crate::solve::Event;
-use crate::star::StarFinder;
+use crate::sound_stars::{SoundStar, SoundStars, Wanted};
 use crate::stencils::{StarParams, StarReport};
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
@@ -84,25 +84,28 @@ impl NodalPolynomials {
             slopes: crate::slopes::Slopes::Free,
         };
         let part = |piece: Range<usize>| {
-            let mut finder = StarFinder::new(surroundings, nearest, choice);
-            let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-            let mut part =
-                Part { coefficients: Vec::new(), radii: Vec::new(), report: StarReport::default(), poor: None };
-            for node in piece {
-                let id = NodeId::of(node);
-                let outcome = sound_star(&mut finder, &mut mwls, id, demand, &mut star);
-                let mut fitted = [0.0; MAX_MONOMIALS];
-                fitted[0] = values[node];
-                if outcome.order == 0 {
-                    let (at, tried) = (surroundings.xy()[node], star.len());
-                    part.poor = part.poor.or(Some(MfdmError::PoorStar { node, at, order: 1, tried }));
-                } else {
-                    mwls.fit(|k| values[star[k].index()], &mut fitted);
-                }
-                part.coefficients.extend(&fitted[..n]);
-                part.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
-                part.report.add(&outcome, params.order);
-            }
+            let mut stars = SoundStars::new(surroundings, nearest, choice);
+            let mut part = Part {
+                coefficients: Vec::with_capacity(n * piece.len()),
+                radii: Vec::with_capacity(piece.len()),
+                report: StarReport::default(),
+                poor: None,
+            };
+            stars.each(
+                piece.map(NodeId::of),
+                |_| demand,
+                Wanted::Polynomial(values),
+                |star| {
+                    let SoundStar { node, nodes, radius, outcome, values } = star;
+                    if outcome.order == 0 && part.poor.is_none() {
+                        let at = surroundings.xy()[node.index()];
+                        part.poor = Some(MfdmError::PoorStar { node: node.index(), at, order: 1, tried: nodes.len() });
+                    }
+                    part.coefficients.extend(values);
+                    part.radii.push(radius);
+                    part.report.add(&outcome, params.order);
+                },
+            );
             part
         };
         let mut all = Self {

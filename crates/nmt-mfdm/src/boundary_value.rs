@@ -1,8 +1,9 @@
 //! A boundary value problem −∇²u = s on a mesh: stencils → system → nodal values → recovered field.
 
 use crate::assembly::Frame;
+use crate::batches::{self, Batched};
 use crate::blend::NodalPolynomials;
-use crate::circulation::hole_equations;
+use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
@@ -17,7 +18,7 @@ use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
 use crate::steady::steady;
-use crate::stencils::{StarParams, StarReport, Stencils};
+use crate::stencils::{Kept, StarParams, StarReport, Stencils};
 use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
 use crate::weak::WeakForm;
@@ -70,41 +71,27 @@ pub(crate) fn solve_discrete(
     let roles = roles(conditions, mesh, params);
 
     let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, observer)?;
+    let stencils = if is_batched(params) {
+        None // stars are found along with the equations
+    } else {
+        Some(stencils_of_equations(around, &roles, fluxes, params, kept(params), observer)?)
+    };
     observer(Event::Ended(Stage::Stencils));
 
-    let rule = params.rule()?;
     let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
-    let source_rule = source_rule(params);
+    let (rule, source_rule) = (params.rule()?, source_rule(params));
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let mended = mended_system(frame, around, params, &rule, &mut stencils)?;
-    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
-    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
-    let setting = frame.with(&stencils);
-    let space = TrialSpace {
-        kind: params.trial,
-        mesh,
-        stencils: &stencils,
-        surroundings: &surroundings,
-        nearest: &nearest,
-        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
-    };
-    let weak = match params.formulation {
-        Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
-        Formulation::Local | Formulation::Fem => WeakForm::blended(mesh, &stencils, fluxes, &rule),
-    };
-    let system = match (mended, params.formulation, params.test) {
-        (Some(system), _, _) => system,
-        (None, Formulation::Local, _) => local::assemble(&setting)?,
-        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, &rule)?,
-        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
-            variational::assemble(&setting, &weak)?
+    let assembled = match stencils {
+        Some(stencils) => assemble_at_once(frame, around, params, &rule, stencils)?,
+        None => {
+            let stars = params.star_params(n_nodes, &metric)?;
+            let Batched { mut system, equations, stars, used_stars } =
+                batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
+            steady(frame, (&surroundings, &nearest), params.order, &mut system);
+            Assembled { system, equations, stars, used_stars, smoothing: None }
         }
     };
-    let equations = hole_equations(mesh, &weak, &node_tris, &roles, params.formulation);
-    drop(weak);
-    // Rows are the larger part of what is held; only smoothing needs them again.
-    let stencils = (!interpolates(params)).then_some(stencils);
+    let Assembled { system, equations, stars, used_stars, smoothing: stencils } = assembled;
     observer(Event::Ended(Stage::Assemble));
 
     let Nodal { values, constants, linear } =
@@ -125,6 +112,65 @@ pub(crate) fn solve_discrete(
         NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
+}
+
+/// What the linear solver and the results take.
+struct Assembled {
+    system: LinearSystem,
+    /// Of the holes' constants.
+    equations: Vec<Equation>,
+    stars: StarReport,
+    used_stars: UsedStars,
+    /// Of polynomials that smooth: they make the nodal values from the solution.
+    smoothing: Option<Stencils>,
+}
+
+/// All equations from all stencils.
+fn assemble_at_once(
+    frame: Frame,
+    around: Around,
+    params: &SolveParams,
+    rule: &Rule,
+    mut stencils: Stencils,
+) -> Result<Assembled, MfdmError> {
+    let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
+    let Around { surroundings, nearest, .. } = around;
+    let mended = mended_system(frame, around, params, rule, &mut stencils)?;
+    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
+    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
+    let setting = frame.with(&stencils);
+    let space = TrialSpace {
+        kind: params.trial,
+        mesh,
+        stencils: &stencils,
+        surroundings,
+        nearest,
+        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+    };
+    // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
+    let of_holes = (kept(params) == Kept::Laplacian).then(|| {
+        let nodes = nodes_of_equations(mesh, node_tris, roles, params.formulation);
+        Stencils::of_some((surroundings, nearest), stencils.params(), nodes, |node| stencils.known_of(node))
+    });
+    let weak = match params.formulation {
+        Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
+        Formulation::Local | Formulation::Fem => {
+            WeakForm::blended(mesh, of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
+        }
+    };
+    let system = match (mended, params.formulation, params.test) {
+        (Some(system), _, _) => system,
+        (None, Formulation::Local, _) => local::assemble(&setting)?,
+        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
+        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
+            variational::assemble(&setting, &weak)?
+        }
+    };
+    let equations = hole_equations(mesh, &weak, node_tris, roles, params.formulation);
+    drop(weak);
+    // Rows are the larger part of what is held; only smoothing needs them again.
+    let stencils = (!interpolates(params)).then_some(stencils);
+    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -149,7 +195,7 @@ pub(crate) fn star_of_equations(
     let nearest = surroundings.nearest();
     let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
     let roles = roles(conditions, mesh, params);
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, &mut |_| {})?;
+    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?;
     let (rule, source_rule) = (params.rule()?, source_rule(params));
     let node_tris = NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes());
     let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
@@ -176,6 +222,19 @@ fn is_mended(params: &SolveParams) -> bool {
     form == (Formulation::Variational, Trial::Blended, Test::Hat) && interpolates(params)
 }
 
+/// The rows that the equations need of every star.
+fn kept(params: &SolveParams) -> Kept {
+    match params.formulation {
+        Formulation::Local if interpolates(params) => Kept::Laplacian,
+        _ => Kept::Derivatives,
+    }
+}
+
+/// Whether stars are made and dropped batch by batch: their rows are the larger part of what is held.
+fn is_batched(params: &SolveParams) -> bool {
+    is_mended(params) && params.order >= 3
+}
+
 fn roles(conditions: Vec<NodeCondition>, mesh: &Mesh, params: &SolveParams) -> Roles {
     let dirichlet = if interpolates(params) { Dirichlet::Eliminated } else { Dirichlet::Rows };
     Roles::new(conditions, mesh.cloud().n_interior(), dirichlet)
@@ -191,6 +250,7 @@ fn stencils_of_equations(
     roles: &Roles,
     fluxes: &Fluxes,
     params: &SolveParams,
+    kept: Kept,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Stencils, MfdmError> {
     let Around { mesh, surroundings, nearest } = around;
@@ -209,7 +269,7 @@ fn stencils_of_equations(
         Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(stretch)),
         Formulation::Variational | Formulation::Fem => None,
     };
-    let stencils = Stencils::meeting(surroundings, nearest, stars, range.clone(), known, observer);
+    let stencils = Stencils::meeting((surroundings, nearest), stars, kept, range.clone(), known, observer);
     stencils.require(range, mesh.xy(), 1)?;
     if params.formulation == Formulation::Local {
         stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;

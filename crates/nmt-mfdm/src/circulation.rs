@@ -24,31 +24,62 @@ pub(crate) fn hole_equations(
     roles: &Roles,
     formulation: Formulation,
 ) -> Vec<Equation> {
-    let layers = if formulation == Formulation::Local { LOCAL_LAYERS } else { 0 };
     let (mut sum, mut gathered) = (RowSum::new(mesh.cloud().n_nodes()), Gathered::default());
-    let mut is_one = vec![false; mesh.cloud().n_nodes()];
-    (0..roles.n_holes)
-        .map(|hole| {
-            let ones = nodes_of_one(mesh, node_tris, hole, layers);
-            ones.iter().for_each(|node| is_one[node.index()] = true);
-            let mut triangles: Vec<TriId> = ones.iter().flat_map(|node| node_tris.around(*node)).copied().collect();
-            triangles.sort_unstable();
-            triangles.dedup();
-            // ∇v vanishes where v is 1 on the whole triangle.
-            let corners_of_one = |t: TriId| mesh.tri_nodes()[t.index()].map(|node| is_one[node.index()]);
-            for &t in triangles.iter().filter(|t| corners_of_one(**t) != [true; 3]) {
-                let slopes = barycentric_gradients(mesh.corners(t));
-                let of_one = corners_of_one(t);
-                let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
-                weak.add(std::iter::once((t, slope)), &mut gathered, &mut sum);
-            }
-            let integral =
-                |t: &TriId| mesh.area(*t) * corners_of_one(*t).iter().filter(|one| **one).count() as f64 / 3.0;
-            let rhs = 2.0 * (triangles.iter().map(integral).sum::<f64>() + hole_area(mesh, hole));
-            ones.iter().for_each(|node| is_one[node.index()] = false);
-            Equation { row: sum.take(roles), rhs }
-        })
-        .collect()
+    let equation = |ring: Ring| {
+        for &t in ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]) {
+            let slopes = barycentric_gradients(mesh.corners(t));
+            let of_one = ring.corners_of_one(mesh, t);
+            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
+            weak.add(std::iter::once((t, slope)), &mut gathered, &mut sum);
+        }
+        let n_ones = |t: TriId| ring.corners_of_one(mesh, t).iter().filter(|one| **one).count() as f64;
+        let integral = |t: &TriId| mesh.area(*t) * n_ones(*t) / 3.0;
+        let rhs = 2.0 * (ring.triangles.iter().map(integral).sum::<f64>() + hole_area(mesh, ring.hole));
+        Equation { row: sum.take(roles), rhs }
+    };
+    (0..roles.n_holes).map(|hole| Ring::new(mesh, node_tris, hole, formulation)).map(equation).collect()
+}
+
+/// The nodes whose polynomials enter the equations of the holes, ascending.
+pub(crate) fn nodes_of_equations(
+    mesh: &Mesh,
+    node_tris: &NodeTris,
+    roles: &Roles,
+    formulation: Formulation,
+) -> Vec<NodeId> {
+    let mut nodes = Vec::new();
+    for hole in 0..roles.n_holes {
+        let ring = Ring::new(mesh, node_tris, hole, formulation);
+        let integrated = ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]);
+        nodes.extend(integrated.flat_map(|t| mesh.tri_nodes()[t.index()]));
+    }
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The v of a hole.
+struct Ring {
+    hole: usize,
+    /// Nodes where v is 1, ascending.
+    ones: Vec<NodeId>,
+    /// The triangles around them, ascending; ∇v vanishes where v is 1 on the whole triangle.
+    triangles: Vec<TriId>,
+}
+
+impl Ring {
+    fn new(mesh: &Mesh, node_tris: &NodeTris, hole: usize, formulation: Formulation) -> Self {
+        let layers = if formulation == Formulation::Local { LOCAL_LAYERS } else { 0 };
+        let ones = nodes_of_one(mesh, node_tris, hole, layers);
+        let mut triangles: Vec<TriId> = ones.iter().flat_map(|node| node_tris.around(*node)).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        Self { hole, ones, triangles }
+    }
+
+    fn corners_of_one(&self, mesh: &Mesh, triangle: TriId) -> [bool; 3] {
+        mesh.tri_nodes()[triangle.index()].map(|node| self.ones.binary_search(&node).is_ok())
+    }
 }
 
 /// Area of the polygon through a hole's nodes, user's length unit squared.

@@ -3,7 +3,7 @@
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::parallel::map_chunks;
 use crate::slopes::{KnownSlopes, gradient_of_monomial};
-use crate::stencils::{StarParams, Stencils};
+use crate::stencils::{Kept, StarParams, Stencils};
 use crate::surroundings::Surroundings;
 use nmt_geom::NodeId;
 use nmt_geom::point::{dot, sub};
@@ -65,7 +65,8 @@ impl UsedStars {
         for first in (self.first..n_nodes).step_by(BATCH) {
             let range = first..(first + BATCH).min(n_nodes);
             let known = |node: NodeId| self.known.get(&node).copied();
-            let mut stencils = Stencils::meeting(&surroundings, &nearest, params, range.clone(), known, &mut |_| {});
+            let around = (&surroundings, &nearest);
+            let mut stencils = Stencils::meeting(around, params, Kept::Derivatives, range.clone(), known, &mut |_| {});
             let larger = self.larger.range(NodeId::of(range.start)..NodeId::of(range.end));
             stencils.replace(&surroundings, &nearest, &larger.map(|(node, size)| (*node, *size)).collect::<Vec<_>>());
             let pieces = map_chunks(range, |piece| {

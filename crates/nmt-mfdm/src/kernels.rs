@@ -8,7 +8,7 @@ use crate::problem::HoleCondition;
 use crate::solver::kernels::{cycles, products, setups};
 use crate::source::Source;
 use crate::star::default_star;
-use crate::stencils::{StarParams, Stencils};
+use crate::stencils::{Kept, StarParams, Stencils};
 use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, LinearSystem, Roles};
 use crate::weak::WeakForm;
@@ -20,6 +20,8 @@ use nmt_tri::{Mesh, NodeTris};
 pub enum Kernel {
     /// Stars of nine nodes and their rows.
     Rows,
+    /// The same stars and their rows of ∇² alone.
+    LaplacianRows,
     /// The system of the local form.
     LocalAssembly,
     /// The system of the variational form with hats.
@@ -36,8 +38,9 @@ pub enum Kernel {
 
 impl Kernel {
     /// All, with their names in the baseline.
-    pub const ALL: [(&'static str, Self); 7] = [
+    pub const ALL: [(&'static str, Self); 8] = [
         ("rows", Self::Rows),
+        ("rows of ∇²", Self::LaplacianRows),
         ("local assembly", Self::LocalAssembly),
         ("variational assembly", Self::VariationalAssembly),
         ("multigrid set-up", Self::MultigridSetup),
@@ -57,6 +60,11 @@ impl Kernel {
         let n_nodes = mesh.cloud().n_nodes();
         let rows = || Stencils::new(&surroundings, &nearest, params, 0..n_nodes);
         if self == Self::Rows {
+            return Ok((0..times).map(|_| rows().report().worst_condition).sum());
+        }
+        if self == Self::LaplacianRows {
+            let around = (&surroundings, &nearest);
+            let rows = || Stencils::meeting(around, params, Kept::Laplacian, 0..n_nodes, |_| None, &mut |_| {});
             return Ok((0..times).map(|_| rows().report().worst_condition).sum());
         }
         if self == Self::Recovery {

@@ -24,6 +24,7 @@
 
 mod assembly;
 mod basis;
+mod batches;
 mod blend;
 mod boundary_value;
 mod circulation;
@@ -38,6 +39,7 @@ mod gauss;
 #[cfg(feature = "kernels")]
 #[doc(hidden)]
 pub mod kernels;
+mod lanes;
 mod local;
 mod mend;
 mod mwls;
@@ -47,12 +49,14 @@ mod params;
 mod poisson;
 mod post;
 mod problem;
+mod quartet;
 mod repair;
 mod shapes;
 mod slopes;
 mod solution;
 mod solve;
 mod solver;
+mod sound_stars;
 mod source;
 mod star;
 mod steady;

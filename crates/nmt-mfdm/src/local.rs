@@ -1,11 +1,8 @@
 //! The local formulation: one equation a node, ∇²u = −s inside and where a flux is given; paper, eq. (17).
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
-use crate::basis::row;
 use crate::error::MfdmError;
-use crate::stencils::Stencils;
 use crate::system::{Equation, LinearSystem, RowSum, SplitRow};
-use nmt_geom::NodeId;
 
 /// Collocates −∇²u = s at every unknown node, times the square of its star's radius, so that all rows are of one size
 /// whatever the spacing. The polynomial of a node with a flux meets n·∇u = q.
@@ -26,18 +23,10 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
             let mut equation = Equation { row: SplitRow::default(), rhs: source.at(mesh.xy()[node.index()])? };
             equation.rhs *= stencil.radius * stencil.radius;
             // The row holds for u less the slope that a flux makes known.
-            equation.rhs -= stencils.known_share(node, laplacian(stencils, node), mesh.xy());
-            laplacian(stencils, node).for_each(|(other, c)| equation.row.add(roles.of(other), -c));
+            equation.rhs -= stencils.known_share(node, stencils.laplacian(node), mesh.xy());
+            stencils.laplacian(node).for_each(|(other, c)| equation.row.add(roles.of(other), -c));
             Ok(equation)
         };
         LinearSystem::of(roles, piece.map(equation))
     })
-}
-
-/// What each node of the star contributes to ∇²u at its centre, times the square of the star's radius.
-fn laplacian(stencils: &Stencils, node: NodeId) -> impl Iterator<Item = (NodeId, f64)> {
-    let stencil = stencils.of(node);
-    let (xx, yy) = (stencil.row(row(2, 0)), stencil.row(row(0, 2)));
-    let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch * stretch);
-    stencil.nodes.iter().zip(xx.iter().zip(yy)).map(move |(&other, (xx, yy))| (other, xx * s_x + yy * s_y))
 }

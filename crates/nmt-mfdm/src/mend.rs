@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 pub(crate) const SOFT: f64 = 0.5;
 
 /// Times that stars are enlarged, by half each time.
-const ROUNDS: usize = 3;
+pub(crate) const ROUNDS: usize = 3;
 
 /// Enlarges the stars of soft nodes, and makes the equations that their polynomials enter anew; tells how many nodes were
 /// asked for at last for each star that was enlarged, by node.
@@ -58,14 +58,14 @@ pub(crate) fn mend(
 }
 
 /// The nodes among `unknowns` (ascending) whose own coefficient is below [`SOFT`] of what linear elements have.
-fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
+pub(crate) fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
     let is_soft =
         |k: &usize| system.matrix.diagonal(*k) < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(*k));
     unknowns.filter(is_soft).map(|k| frame.roles.node(k)).collect()
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.
-fn touched(frame: Frame, nodes: &[NodeId]) -> Vec<usize> {
+pub(crate) fn touched(frame: Frame, nodes: &[NodeId]) -> Vec<usize> {
     let triangles = nodes.iter().flat_map(|&node| frame.node_tris.around(node));
     let corners = triangles.flat_map(|t| frame.mesh.tri_nodes()[t.index()]);
     let unknown = corners.filter_map(|node| match frame.roles.of(node) {

@@ -255,7 +255,7 @@ impl Mwls {
 
 /// True where all nodes lie on one line along an axis, up to rounding, by the squares of their weighted coordinates:
 /// scaling the columns would make a coordinate of that rounding.
-fn is_on_one_line([h, k]: [f64; 2]) -> bool {
+pub(crate) fn is_on_one_line([h, k]: [f64; 2]) -> bool {
     h.min(k) <= ON_ONE_LINE_REL * ON_ONE_LINE_REL * h.max(k)
 }
 

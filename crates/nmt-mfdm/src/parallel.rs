@@ -30,7 +30,7 @@ pub(crate) fn map_pieces<T: Send>(
 }
 
 /// Pieces that are held at a time by [`take_pieces`].
-const BATCH: usize = 16;
+pub(crate) const BATCH: usize = 16;
 
 /// [`map_pieces`] whose results are taken in order, a few at a time: for results as large as memory allows.
 pub(crate) fn take_pieces<T: Send>(
@@ -43,6 +43,16 @@ pub(crate) fn take_pieces<T: Send>(
         let batch = first..(first + BATCH * size).min(range.end);
         map_pieces(batch, size, &work).into_iter().for_each(&mut take);
     }
+}
+
+/// `work` on each of `pieces`, results in their order.
+pub(crate) fn map_owned<P: Send, T: Send>(pieces: Vec<P>, work: impl Fn(P) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    if pieces.len() > 1 {
+        use rayon::prelude::*;
+        return pieces.into_par_iter().map(work).collect();
+    }
+    pieces.into_iter().map(work).collect()
 }
 
 /// A size of pieces for work whose every piece costs as much as the whole range has elements: the sum stays O(n).

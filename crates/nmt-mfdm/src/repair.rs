@@ -12,7 +12,7 @@ use nmt_geom::NodeId;
 /// Measured on irregular clouds: stars of order 2 lie between 5 and 60, but one in 10⁵, at a wall, reaches 400, and its
 /// polynomial is then wrong by as much as its stress is: J of a square at 41 across is off by 7e-5 with that star, by
 /// 1e-5 with 10 nodes in it. Stars of order 3 lie between 100 and 350.
-const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
+pub(crate) const SOUND_CONDITION: [f64; MAX_ORDER + 1] = [1.0, 20.0, 100.0, 500.0, 3000.0];
 
 /// g of the weights that are tried where a star keeps a wrong sign: a neighbour much nearer than all others has nearly all
 /// the weight, the polynomial falls from 1 to 0 on the way to it, and what the others leave of the second derivative along
@@ -118,6 +118,17 @@ pub(crate) fn sound_star(
     StarOutcome { enlarged: true, condition: f64::INFINITY, ..StarOutcome::default() }
 }
 
+/// The nearest nodes for a polynomial of `order`; returns how many hidden ones were passed over.
+pub(crate) fn find_star(
+    finder: &mut StarFinder,
+    node: NodeId,
+    wanted: usize,
+    order: usize,
+    star: &mut Vec<NodeId>,
+) -> usize {
+    if order < WHOLE_SHELLS { finder.find(node, wanted, star) } else { finder.find_shells(node, wanted, star) }
+}
+
 /// A star that was tried.
 #[derive(Clone, Copy)]
 struct Candidate {
@@ -144,11 +155,7 @@ fn try_star(
     wanted: usize,
     star: &mut Vec<NodeId>,
 ) -> Candidate {
-    let hidden = if demand.order < WHOLE_SHELLS {
-        finder.find(node, wanted, star)
-    } else {
-        finder.find_shells(node, wanted, star)
-    };
+    let hidden = find_star(finder, node, wanted, demand.order, star);
     let places = finder.surroundings().stretched();
     let condition = match star.iter().position(|n| *n == node) {
         Some(centre) => {

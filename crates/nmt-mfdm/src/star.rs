@@ -56,6 +56,7 @@ pub struct StarFinder<'a> {
     nearest: &'a Nearest<'a>,
     choice: StarChoice,
     scratch: Scratch,
+    clear: Clear,
     hidden: Vec<f64>, // distance² of the hidden nodes met
     candidates: Vec<NodeId>,
     distances: Vec<f64>, // squared
@@ -69,6 +70,7 @@ impl<'a> StarFinder<'a> {
             nearest,
             choice,
             scratch: Scratch::default(),
+            clear: Clear::default(),
             hidden: Vec::new(),
             candidates: Vec::new(),
             distances: Vec::new(),
@@ -92,7 +94,8 @@ impl<'a> StarFinder<'a> {
     pub fn find(&mut self, node: NodeId, size: usize, out: &mut Vec<NodeId>) -> usize {
         let surroundings = self.surroundings;
         let centre = surroundings.stretched()[node.index()];
-        let all_visible = |radius: f64| surroundings.all_visible(surroundings.xy()[node.index()], radius);
+        let at = surroundings.xy()[node.index()];
+        let all_visible = |clear: &mut Clear, radius: f64| clear.all_visible(surroundings, at, radius);
         self.find_seen(centre, size, all_visible, |other| surroundings.sees(node, other), out)
     }
 
@@ -121,7 +124,7 @@ impl<'a> StarFinder<'a> {
     pub fn find_at(&mut self, at: Point, size: usize, out: &mut Vec<NodeId>) -> usize {
         let surroundings = self.surroundings;
         let centre = surroundings.metric().stretched(at);
-        let all_visible = |radius: f64| surroundings.all_visible(at, radius);
+        let all_visible = |clear: &mut Clear, radius: f64| clear.all_visible(surroundings, at, radius);
         self.find_seen(centre, size, all_visible, |other| surroundings.sees_from(at, other), out)
     }
 
@@ -129,7 +132,7 @@ impl<'a> StarFinder<'a> {
         &mut self,
         centre: Point,
         size: usize,
-        all_visible: impl Fn(f64) -> bool,
+        all_visible: impl Fn(&mut Clear, f64) -> bool,
         sees: impl Fn(NodeId) -> bool,
         out: &mut Vec<NodeId>,
     ) -> usize {
@@ -139,10 +142,9 @@ impl<'a> StarFinder<'a> {
             StarChoice::Balanced => CANDIDATES * size,
         };
         let distance = |other: &NodeId| distance_squared(places[other.index()], centre);
-        let farthest = |out: &[NodeId]| out.iter().map(distance).fold(0.0f64, f64::max);
-        self.nearest.nearest(centre, wanted, |_| true, &mut self.scratch, out);
+        let farthest = self.nearest.nearest_of_all(centre, wanted, &mut self.scratch, out);
         self.hidden.clear();
-        if !all_visible(farthest(out).sqrt()) {
+        if !all_visible(&mut self.clear, farthest) {
             let hidden = &mut self.hidden;
             let accept = |other: NodeId| {
                 let visible = sees(other);
@@ -156,7 +158,10 @@ impl<'a> StarFinder<'a> {
         if self.choice == StarChoice::Balanced {
             self.balance(centre, size, out);
         }
-        let limit = farthest(out);
+        if self.hidden.is_empty() {
+            return 0;
+        }
+        let limit = out.iter().map(distance).fold(0.0f64, f64::max);
         self.hidden.iter().filter(|d2| **d2 < limit).count()
     }
 
@@ -188,6 +193,40 @@ impl<'a> StarFinder<'a> {
         let missing = size.saturating_sub(out.len());
         out.extend(candidates.iter().take(missing));
         out.sort_unstable();
+    }
+}
+
+/// A disc without a segment in it, to be asked before the index of the segments is: the next star is beside the last one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clear {
+    at: Point,
+    radius: f64,
+    crowded: u32, // how many more stars are looked at by themselves
+}
+
+impl Clear {
+    /// The disc has so many times the radius of a star.
+    const LARGER: f64 = 12.0;
+
+    /// Stars that are looked at by themselves after a large disc had a segment in it.
+    const PAUSE: u32 = 6;
+
+    /// [`Surroundings::all_visible`].
+    fn all_visible(&mut self, surroundings: &Surroundings, at: Point, radius: f64) -> bool {
+        let room = self.radius * (1.0 - SAME_DISTANCE_REL) - radius;
+        if room > 0.0 && distance_squared(at, self.at) < room * room {
+            return true;
+        }
+        if self.crowded == 0 {
+            let larger = Self::LARGER * radius;
+            if surroundings.all_visible(at, larger) {
+                (self.at, self.radius) = (at, larger);
+                return true;
+            }
+            self.crowded = Self::PAUSE;
+        }
+        self.crowded -= 1;
+        surroundings.all_visible(at, radius)
     }
 }
 

@@ -1,14 +1,14 @@
 //! Stencils: stars with their coefficient rows, for many nodes.
 
-use crate::basis::n_monomials;
+use crate::basis::{n_monomials, row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
-use crate::mwls::Mwls;
-use crate::parallel::take_pieces;
-use crate::repair::{Demand, StarOutcome, sound_star};
+use crate::parallel::{BATCH, map_owned};
+use crate::repair::{Demand, StarOutcome};
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
-use crate::star::{StarChoice, StarFinder};
+use crate::sound_stars::{SoundStars, Wanted};
+use crate::star::StarChoice;
 use crate::surroundings::{Metric, Surroundings};
 use nmt_cloud::Nearest;
 use nmt_geom::point::{dot, sub};
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Stars per piece of work.
-const PIECE: usize = 1024;
+const PIECE: usize = 512;
 
 /// Order, size and choice of stars.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,19 +80,119 @@ impl StarReport {
     }
 }
 
-/// The stars of consecutive nodes and the rows of their derivatives.
+/// Which rows are kept of each star.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// Those of all derivatives.
+    Derivatives,
+    /// That of ∇² alone, of interpolating polynomials: what the local equations need, a fifth of the whole at order 2.
+    Laplacian,
+}
+
+/// The stars of nodes and the rows of their derivatives.
 #[derive(Clone, Debug)]
 pub struct Stencils {
     params: StarParams,
+    kept: Kept,
+    size: usize, // nodes in most stars
     metric: Metric,
-    first: usize,       // number of the first node
+    of: Numbers,
     starts: Vec<usize>, // first star entry of each node, shape (n,)
     sizes: Vec<u32>,    // nodes in each star, shape (n,)
-    nodes: Vec<NodeId>, // star after star, each ascending; those of mended stars at the end, their first ones left
-    rows: Vec<f64>,     // for a star of m nodes, (n_monomials − first row) rows of m, in scaled coordinates
+    nodes: Vec<NodeId>, // star after star, each ascending; those of another size than most at the end, their first ones left
+    rows: Vec<f64>,     // for a star of m nodes, its rows of m, in scaled coordinates
     radii: Vec<f64>,    // radius of each star, user's length unit
-    outcomes: Vec<StarOutcome>,
+    outcomes: Vec<Outcome>,
     known: BTreeMap<NodeId, KnownSlopes>, // of nodes whose gradient is known in part
+}
+
+impl Kept {
+    fn wanted(self) -> Wanted<'static> {
+        match self {
+            Self::Derivatives => Wanted::Rows,
+            Self::Laplacian => Wanted::Laplacian,
+        }
+    }
+}
+
+/// [`StarOutcome`] in 16 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outcome {
+    condition: f64,
+    hidden: u32,
+    order: u8,
+    enlarged: bool,
+    wrong_sign: bool,
+}
+
+impl From<StarOutcome> for Outcome {
+    fn from(outcome: StarOutcome) -> Self {
+        let StarOutcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
+        Self { condition, hidden: u32::try_from(hidden).unwrap_or(u32::MAX), order: order as u8, enlarged, wrong_sign }
+    }
+}
+
+impl From<Outcome> for StarOutcome {
+    fn from(outcome: Outcome) -> Self {
+        let Outcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
+        Self { order: order.into(), enlarged, hidden: hidden as usize, condition, wrong_sign }
+    }
+}
+
+/// The part of [`Stencils`] that one piece of work fills.
+struct Piece<'a> {
+    first: usize, // place of its first node
+    nodes: &'a mut [NodeId],
+    rows: &'a mut [f64],
+    sizes: &'a mut [u32],
+    radii: &'a mut [f64],
+    outcomes: &'a mut [Outcome],
+}
+
+/// What does not fit there.
+struct Filled {
+    n: usize,
+    others: Vec<Other>,
+    known: BTreeMap<NodeId, KnownSlopes>,
+}
+
+/// A star of another size than most.
+struct Other {
+    place: usize,
+    nodes: Vec<NodeId>,
+    rows: Vec<f64>,
+}
+
+/// Which nodes have stencils.
+#[derive(Clone, Debug)]
+enum Numbers {
+    Consecutive(Range<usize>),
+    Some(Vec<NodeId>), // ascending
+}
+
+impl Numbers {
+    fn len(&self) -> usize {
+        match self {
+            Self::Consecutive(range) => range.len(),
+            Self::Some(nodes) => nodes.len(),
+        }
+    }
+
+    fn node(&self, place: usize) -> NodeId {
+        match self {
+            Self::Consecutive(range) => NodeId::of(range.start + place),
+            Self::Some(nodes) => nodes[place],
+        }
+    }
+
+    /// Beyond the last where a node has none.
+    #[inline]
+    fn place(&self, node: NodeId) -> usize {
+        match self {
+            Self::Consecutive(range) => node.index().wrapping_sub(range.start),
+            Self::Some(nodes) => nodes.binary_search(&node).unwrap_or(usize::MAX),
+        }
+    }
 }
 
 /// The stencil of one node.
@@ -126,71 +226,122 @@ impl Stencils {
     /// A star that cannot carry the polynomial is enlarged, then its order lowered (the rows of the missing derivatives
     /// are 0); [`Self::report`] tells.
     pub fn new(surroundings: &Surroundings, nearest: &Nearest, params: StarParams, range: Range<usize>) -> Self {
-        Self::meeting(surroundings, nearest, params, range, |_| None, &mut |_| {})
+        Self::meeting((surroundings, nearest), params, Kept::Derivatives, range, |_| None, &mut |_| {})
     }
 
     /// As [`Self::new`], the polynomials meeting what is `known` of the gradient at their nodes: their rows hold for values
     /// less the known slope; telling how many nodes are done.
     pub(crate) fn meeting(
-        surroundings: &Surroundings,
-        nearest: &Nearest,
+        around: (&Surroundings, &Nearest),
         params: StarParams,
+        kept: Kept,
         range: Range<usize>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
         observer: &mut dyn FnMut(Event),
     ) -> Self {
-        let of = range.len();
-        let metric = surroundings.metric();
-        let first = range.start;
-        let part = |piece: Range<usize>| {
-            let mut finder = StarFinder::new(surroundings, nearest, params.choice);
-            let (mut mwls, mut star) = (Mwls::default(), Vec::new());
-            let mut part = Self::empty(params, metric, piece.start);
-            for node in piece {
-                let node = NodeId::of(node);
-                part.known.extend(known(node).map(|known| (node, known)));
-                let demand = part.demand(surroundings, node, params.size);
-                let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
-                part.push(&star, &mut mwls, outcome);
-            }
-            part
+        Self::of_numbers(around, params, kept, Numbers::Consecutive(range), known, observer)
+    }
+
+    /// As [`Self::new`] of the given nodes, ascending, meeting what is `known` of their gradients.
+    pub(crate) fn of_some(
+        around: (&Surroundings, &Nearest),
+        params: StarParams,
+        nodes: Vec<NodeId>,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+    ) -> Self {
+        Self::of_numbers(around, params, Kept::Derivatives, Numbers::Some(nodes), known, &mut |_| {})
+    }
+
+    fn of_numbers(
+        (surroundings, nearest): (&Surroundings, &Nearest),
+        params: StarParams,
+        kept: Kept,
+        numbers: Numbers,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+        observer: &mut dyn FnMut(Event),
+    ) -> Self {
+        let n = numbers.len();
+        let mut all = Self::empty(params, surroundings.metric());
+        (all.kept, all.size, all.of) = (kept, params.size, numbers);
+        let n_rows = all.n_rows();
+        all.nodes = vec![NodeId(0); n * all.size];
+        all.rows = vec![0.0; n * n_rows * all.size];
+        all.starts = (0..n).map(|k| k * params.size).collect();
+        all.sizes = vec![0; n];
+        all.radii = vec![0.0; n];
+        all.outcomes = vec![Outcome::default(); n];
+        let size = all.size.max(1);
+        let mut pieces = (0..n)
+            .step_by(PIECE)
+            .zip(all.nodes.chunks_mut(PIECE * size))
+            .zip(all.rows.chunks_mut(PIECE * size * n_rows))
+            .zip(all.sizes.chunks_mut(PIECE))
+            .zip(all.radii.chunks_mut(PIECE))
+            .zip(all.outcomes.chunks_mut(PIECE))
+            .map(|(((((first, nodes), rows), sizes), radii), outcomes)| Piece {
+                first,
+                nodes,
+                rows,
+                sizes,
+                radii,
+                outcomes,
+            });
+        let of = &all.of;
+        let fill = |piece: Piece| {
+            let mut finder = SoundStars::new(surroundings, nearest, params.choice);
+            let nodes = (piece.first..piece.first + piece.sizes.len()).map(|place| of.node(place));
+            let known: BTreeMap<_, _> = nodes.clone().filter_map(|node| Some((node, known(node)?))).collect();
+            let demand = |node: NodeId| demand_of(params, surroundings, node, known.get(&node), params.size);
+            let (mut k, mut others) = (0, Vec::new());
+            finder.each(nodes, demand, kept.wanted(), |star| {
+                piece.sizes[k] = star.nodes.len() as u32;
+                piece.radii[k] = star.radius;
+                piece.outcomes[k] = Outcome::from(star.outcome);
+                if star.nodes.len() == size {
+                    piece.nodes[k * size..(k + 1) * size].copy_from_slice(star.nodes);
+                    piece.rows[k * size * n_rows..(k + 1) * size * n_rows].copy_from_slice(star.values);
+                } else {
+                    others.push(Other {
+                        place: piece.first + k,
+                        nodes: star.nodes.to_vec(),
+                        rows: star.values.to_vec(),
+                    });
+                }
+                k += 1;
+            });
+            Filled { n: k, others, known }
         };
-        let mut all = Self::empty(params, metric, first);
-        take_pieces(range, PIECE, part, |part: Self| {
-            let offset = all.nodes.len();
-            all.starts.extend(part.starts.iter().map(|start| start + offset));
-            all.sizes.extend(part.sizes);
-            all.nodes.extend(part.nodes);
-            all.rows.extend(part.rows);
-            all.radii.extend(part.radii);
-            all.outcomes.extend(part.outcomes);
-            all.known.extend(part.known);
-            observer(Event::Nodes { done: all.outcomes.len(), of });
-        });
+        let (mut done, mut others, mut all_known) = (0, Vec::new(), BTreeMap::new());
+        loop {
+            let batch: Vec<Piece> = pieces.by_ref().take(BATCH).collect();
+            if batch.is_empty() {
+                break;
+            }
+            for filled in map_owned(batch, fill) {
+                done += filled.n;
+                others.extend(filled.others);
+                all_known.extend(filled.known);
+            }
+            observer(Event::Nodes { done, of: n });
+        }
+        drop(pieces);
+        // Stars of another size than most follow those.
+        all.nodes.reserve_exact(others.iter().map(|other: &Other| other.nodes.len()).sum());
+        all.rows.reserve_exact(others.iter().map(|other| other.rows.len()).sum());
+        for Other { place, nodes, rows } in others {
+            all.append(place, &nodes, &rows);
+        }
+        all.known = all_known;
         all
     }
 
-    /// What the star of a node must carry.
-    fn demand(&self, surroundings: &Surroundings, node: NodeId, size: usize) -> Demand {
-        let StarParams { order, smoothing, .. } = self.params;
-        let known = self.known.get(&node);
-        let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
-        let slopes = known.map_or(Slopes::Free, |known| known.slopes);
-        Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
-    }
-
-    /// Appends the star that `mwls` holds.
-    fn push(&mut self, star: &[NodeId], mwls: &mut Mwls, outcome: StarOutcome) {
-        let before = self.rows.len();
-        if outcome.order > 0 {
-            mwls.rows(&mut self.rows);
-        }
-        self.rows.resize(before + self.n_rows() * star.len(), 0.0);
-        self.starts.push(self.nodes.len());
-        self.sizes.push(star.len() as u32);
-        self.nodes.extend(star);
-        self.radii.push(if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 });
-        self.outcomes.push(outcome);
+    /// Gives the node at a place another star; that it had is left.
+    fn append(&mut self, place: usize, nodes: &[NodeId], rows: &[f64]) {
+        // Rows begin where nodes do.
+        self.starts[place] = self.nodes.len();
+        self.sizes[place] = nodes.len() as u32;
+        self.nodes.extend(nodes);
+        self.rows.extend(rows);
     }
 
     /// How the stars are chosen.
@@ -200,34 +351,34 @@ impl Stencils {
 
     /// Rows of a star.
     fn n_rows(&self) -> usize {
-        n_monomials(self.params.order) - self.params.first_row()
+        match self.kept {
+            Kept::Derivatives => n_monomials(self.params.order) - self.params.first_row(),
+            Kept::Laplacian => 1,
+        }
     }
 
     /// Half as many nodes again as the star of `node` has.
     pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
-        (3 * self.sizes[node.index() - self.first] as usize).div_ceil(2)
+        half_as_many_again(self.sizes[self.of.place(node)])
     }
 
     /// Gives nodes other stars, of the sizes told at least, each sound as those of [`Self::new`] are.
     pub(crate) fn replace(&mut self, surroundings: &Surroundings, nearest: &Nearest, stars: &[(NodeId, usize)]) {
-        let mut finder = StarFinder::new(surroundings, nearest, self.params.choice);
-        let (mut mwls, mut star) = (Mwls::default(), Vec::new());
+        let mut finder = SoundStars::new(surroundings, nearest, self.params.choice);
         for &(node, size) in stars {
-            let k = node.index() - self.first;
-            let demand = self.demand(surroundings, node, size);
-            let outcome = sound_star(&mut finder, &mut mwls, node, demand, &mut star);
-            self.push(&star, &mut mwls, StarOutcome { enlarged: true, ..outcome });
-            // What was appended takes the place of the node's own.
-            self.starts.swap_remove(k);
-            self.sizes.swap_remove(k);
-            self.radii.swap_remove(k);
-            self.outcomes.swap_remove(k);
+            let k = self.of.place(node);
+            let demand = demand_of(self.params, surroundings, node, self.known.get(&node), size);
+            let star = finder.one(node, demand, self.kept.wanted());
+            self.radii[k] = star.radius;
+            self.outcomes[k] = Outcome::from(StarOutcome { enlarged: true, ..star.outcome });
+            self.append(k, star.nodes, star.values);
         }
     }
 
     /// A constant about each of `n_nodes` nodes, its value: blended, they are the linear interpolant of finite elements.
     pub(crate) fn constants(n_nodes: usize) -> Self {
-        let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain(), 0);
+        let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain());
+        stencils.of = Numbers::Consecutive(0..n_nodes);
         stencils.starts = vec![0; n_nodes];
         stencils.sizes = vec![0; n_nodes];
         stencils.radii = vec![1.0; n_nodes];
@@ -239,7 +390,7 @@ impl Stencils {
     /// # Errors
     /// [`MfdmError::PoorStar`] for the first node whose star does not.
     pub fn require(&self, range: Range<usize>, xy: &[Point], order: usize) -> Result<(), MfdmError> {
-        match range.clone().find(|node| self.outcomes[node - self.first].order < order) {
+        match range.clone().find(|node| self.outcome(NodeId::of(*node)).order < order) {
             Some(node) => {
                 let tried = self.of(NodeId::of(node)).nodes.len();
                 Err(MfdmError::PoorStar { node, at: xy[node], order, tried })
@@ -250,19 +401,16 @@ impl Stencils {
 
     /// What became of the star of a node of the range.
     pub fn outcome(&self, node: NodeId) -> StarOutcome {
-        self.outcomes.get(node.index() - self.first).copied().unwrap_or_default()
+        self.outcomes.get(self.of.place(node)).copied().map(StarOutcome::from).unwrap_or_default()
     }
 
-    /// Numbers of the nodes that have a stencil.
-    pub fn range(&self) -> Range<usize> {
-        self.first..self.first + self.radii.len()
-    }
-
-    fn empty(params: StarParams, metric: Metric, first: usize) -> Self {
+    fn empty(params: StarParams, metric: Metric) -> Self {
         Self {
             params,
+            kept: Kept::Derivatives,
+            size: params.size,
             metric,
-            first,
+            of: Numbers::Consecutive(0..0),
             starts: Vec::new(),
             sizes: Vec::new(),
             nodes: Vec::new(),
@@ -278,7 +426,8 @@ impl Stencils {
         if self.params.order == 0 {
             return UsedStars::default();
         }
-        UsedStars::new(self.params, self.first, larger, self.known.clone())
+        let first = if self.of.len() > 0 { self.of.node(0).index() } else { 0 };
+        UsedStars::new(self.params, first, larger, self.known.clone())
     }
 
     /// The metric of their coordinates.
@@ -298,7 +447,7 @@ impl Stencils {
 
     /// The stencil of a node of the range.
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
-        let k = node.index() - self.first;
+        let k = self.of.place(node);
         let star = self.starts[k]..self.starts[k] + self.sizes[k] as usize;
         let n_rows = self.n_rows();
         Stencil {
@@ -309,9 +458,31 @@ impl Stencils {
         }
     }
 
+    /// What each node of the star contributes to ∇²u at its centre, times the square of the star's radius.
+    pub(crate) fn laplacian(&self, node: NodeId) -> impl Iterator<Item = (NodeId, f64)> {
+        let Stencil { nodes, rows, .. } = self.of(node);
+        let n = nodes.len();
+        let [s_x, s_y] = self.metric.stretch().map(|stretch| stretch * stretch);
+        let first = |m: usize| (m - self.params.first_row()) * n;
+        let (xx, yy) = match self.kept {
+            Kept::Derivatives => (first(row(2, 0)), first(row(0, 2))),
+            Kept::Laplacian => (0, 0),
+        };
+        let kept = self.kept;
+        nodes.iter().enumerate().map(move |(k, &other)| match kept {
+            Kept::Derivatives => (other, rows[xx + k] * s_x + rows[yy + k] * s_y),
+            Kept::Laplacian => (other, rows[k]),
+        })
+    }
+
     /// What the polynomial of a node meets of its gradient.
     pub(crate) fn known(&self, node: NodeId) -> KnownSlopes {
-        self.known.get(&node).copied().unwrap_or_default()
+        self.known_of(node).unwrap_or_default()
+    }
+
+    /// As [`Self::known`], `None` where nothing is known.
+    pub(crate) fn known_of(&self, node: NodeId) -> Option<KnownSlopes> {
+        self.known.get(&node).copied()
     }
 
     /// What the known slope of a node adds to Σ c·u over its star: Σ c·g·(x_k − x).
@@ -333,7 +504,26 @@ impl Stencils {
     pub fn report(&self) -> StarReport {
         let mut report = StarReport { size: self.params.size, ..StarReport::default() };
         // Constants have no stars.
-        self.outcomes.iter().for_each(|outcome| report.add(outcome, self.params.order));
+        self.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), self.params.order));
         report
     }
+}
+
+/// What the star of a node must carry.
+fn demand_of(
+    params: StarParams,
+    surroundings: &Surroundings,
+    node: NodeId,
+    known: Option<&KnownSlopes>,
+    size: usize,
+) -> Demand {
+    let StarParams { order, smoothing, .. } = params;
+    let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
+    let slopes = known.map_or(Slopes::Free, |known| known.slopes);
+    Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
+}
+
+/// Half as many nodes again.
+pub(crate) fn half_as_many_again(size: u32) -> usize {
+    (3 * size as usize).div_ceil(2)
 }

@@ -2,7 +2,7 @@
 //!
 //! The left side of the variational form (v a hat) and of the circulation on holes (v one around a hole) alike.
 
-use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
+use crate::basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
 use crate::blend::barycentric_gradients;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
@@ -51,6 +51,7 @@ struct Integrals {
 pub(crate) struct Gathered {
     nodes: Vec<NodeId>,
     moments: Vec<Moments>,
+    of_star: Vec<f64>,        // of one of these nodes
     kept: Vec<TriId>,         // the triangle in each slot
     integrals: Vec<[f64; 2]>, // slot after slot, corner after corner, ∫∇(λ_a φ_m) of every monomial
 }
@@ -159,31 +160,50 @@ impl<'a> WeakForm<'a> {
                 sum.add(node, moments[0]);
             }
             let stencil = stencils.of(node);
+            let of_star = &mut gathered.of_star;
+            of_star.clear();
+            of_star.resize(stencil.nodes.len(), 0.0);
             for (m, moment) in moments.iter().enumerate().take(n).skip(stencil.first_row()) {
-                for (&other, coefficient) in stencil.nodes.iter().zip(stencil.row(m)) {
-                    sum.add(other, moment * coefficient);
-                }
+                of_star.iter_mut().zip(stencil.row(m)).for_each(|(total, coefficient)| *total += moment * coefficient);
             }
+            stencil.nodes.iter().zip(of_star.iter()).for_each(|(&other, &total)| sum.add(other, total));
         }
     }
 
     /// ∫∇(λ_a φ_m) over the triangle, and the slivers at its segments, for every monomial φ_m of corner a.
     fn integrate(&self, stencils: &Stencils, triangle: TriId, corner: usize, integrals: &mut [[f64; 2]]) {
+        // Loops of known length take half the time.
+        match stencils.order() {
+            0 => self.integrate_order::<0>(stencils, triangle, corner, integrals),
+            1 => self.integrate_order::<1>(stencils, triangle, corner, integrals),
+            2 => self.integrate_order::<2>(stencils, triangle, corner, integrals),
+            3 => self.integrate_order::<3>(stencils, triangle, corner, integrals),
+            _ => self.integrate_order::<MAX_ORDER>(stencils, triangle, corner, integrals),
+        }
+    }
+
+    #[inline(always)]
+    fn integrate_order<const P: usize>(
+        &self,
+        stencils: &Stencils,
+        triangle: TriId,
+        corner: usize,
+        integrals: &mut [[f64; 2]],
+    ) {
         let corners = self.mesh.corners(triangle);
         let node = self.mesh.tri_nodes()[triangle.index()][corner];
         let radius = stencils.of(node).radius;
         let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch / radius);
-        let order = stencils.order();
         let area = self.mesh.area(triangle);
         let lambda_slope = barycentric_gradients(corners)[corner];
         integrals.fill([0.0; 2]);
         let mut basis = [0.0; MAX_MONOMIALS];
         let mut add = |lambda: &[f64; 3], weight: f64| {
             let offset = |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>();
-            monomials([offset(0) * s_x, offset(1) * s_y], order, &mut basis);
+            monomials([offset(0) * s_x, offset(1) * s_y], P, &mut basis);
             let value_part = lambda_slope.map(|slope| weight * slope);
             let slope_part = [weight * lambda[corner] * s_x, weight * lambda[corner] * s_y];
-            for degree in 0..=order {
+            for degree in 0..=P {
                 for b in 0..=degree {
                     let a = degree - b;
                     let by_x = if a > 0 { basis[row(a - 1, b)] } else { 0.0 };

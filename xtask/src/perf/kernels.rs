@@ -109,7 +109,7 @@ fn nine_nearest(cloud: &Cloud) -> f64 {
     let (mut scratch, mut found) = (Scratch::default(), Vec::new());
     let mut sum = 0.0;
     for p in cloud.xy() {
-        nearest.nearest(*p, 9, |_| true, &mut scratch, &mut found);
+        nearest.nearest_of_all(*p, 9, &mut scratch, &mut found);
         sum += found.iter().map(|node| node.index() as f64).sum::<f64>();
     }
     sum

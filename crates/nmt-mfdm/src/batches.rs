@@ -1,0 +1,215 @@
+//! The variational form with hats, its stars made and dropped batch by batch.
+//!
+//! From order 3 on the rows of all stars would be most of what a solution holds: 1.4 kB a node at order 3, 3.4 kB at
+//! order 4. Nodes are in spatial order, so that the polynomials which some thousand consecutive equations take are
+//! little more than those of their own nodes; stars at the rims of batches are found twice.
+
+use crate::assembly::{Frame, Setting};
+use crate::circulation::{hole_equations, nodes_of_equations};
+use crate::diagnostics::UsedStars;
+use crate::error::MfdmError;
+use crate::gauss::Rule;
+use crate::mend::{ROUNDS, soft_nodes, touched};
+use crate::parallel::map_pieces;
+use crate::problem::Formulation;
+use crate::repair::StarOutcome;
+use crate::solve::Event;
+use crate::stencils::{StarParams, StarReport, Stencils, half_as_many_again};
+use crate::surroundings::Surroundings;
+use crate::system::{Equation, LinearSystem};
+use crate::variational::EquationMaker;
+use crate::weak::WeakForm;
+use nmt_cloud::Nearest;
+use nmt_geom::NodeId;
+use std::collections::BTreeMap;
+
+/// Equations whose stars are held at a time.
+const BATCH: usize = 1 << 14;
+
+/// Equations per piece of work.
+const PIECE: usize = 1 << 11;
+
+/// The system and what became of the stars.
+pub(crate) struct Batched {
+    /// With the stars of soft nodes mended.
+    pub system: LinearSystem,
+    /// Of the holes' constants.
+    pub equations: Vec<Equation>,
+    pub stars: StarReport,
+    pub used_stars: UsedStars,
+}
+
+/// Makes the equations of a problem with interpolating polynomials by `stars`.
+///
+/// # Errors
+/// As the equations have them; [`MfdmError::PoorStar`] where a star carries no polynomial at all.
+pub(crate) fn assemble(
+    frame: Frame,
+    around: (&Surroundings, &Nearest),
+    stars: StarParams,
+    rule: &Rule,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Batched, MfdmError> {
+    assemble_by(BATCH, frame, around, stars, rule, observer)
+}
+
+/// [`assemble`] with `batch` equations at a time.
+fn assemble_by(
+    batch: usize,
+    frame: Frame,
+    around: (&Surroundings, &Nearest),
+    stars: StarParams,
+    rule: &Rule,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Batched, MfdmError> {
+    let n_nodes = frame.mesh.cloud().n_nodes();
+    let mut making = Making {
+        frame,
+        around,
+        params: stars,
+        rule,
+        larger: BTreeMap::new(),
+        sizes: vec![0; n_nodes],
+        outcomes: vec![StarOutcome::default(); n_nodes],
+    };
+    let n = frame.roles.n_unknowns;
+    let mut system = LinearSystem::new(n, frame.roles.n_holes);
+    for first in (0..n).step_by(batch) {
+        let unknowns: Vec<usize> = (first..(first + batch).min(n)).collect();
+        for equation in making.equations(&unknowns)? {
+            system.push(&equation);
+        }
+        observer(Event::Nodes { done: first + unknowns.len(), of: n });
+    }
+    // Nodes that enter no equation have stars too.
+    let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| making.sizes[node] == 0).map(NodeId::of).collect();
+    for nodes in rest.chunks(batch) {
+        making.stencils(nodes.to_vec())?;
+    }
+    let mut soft = soft_nodes(frame, &system, 0..n);
+    for _ in 0..ROUNDS {
+        if soft.is_empty() {
+            break;
+        }
+        let enlarged = soft.iter().map(|&node| (node, half_as_many_again(making.sizes[node.index()])));
+        making.larger.extend(enlarged.collect::<Vec<_>>());
+        let touched = touched(frame, &soft);
+        for unknowns in touched.chunks(batch) {
+            let anew = unknowns.iter().copied().zip(making.equations(unknowns)?);
+            system.replace(&anew.collect::<Vec<_>>());
+        }
+        soft = soft_nodes(frame, &system, touched.into_iter());
+    }
+    let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
+    let stencils = making.stencils(of_holes)?;
+    let weak = WeakForm::blended(frame.mesh, &stencils, frame.fluxes, rule);
+    let equations = hole_equations(frame.mesh, &weak, frame.node_tris, frame.roles, Formulation::Variational);
+    let mut report = StarReport { size: stars.size, ..StarReport::default() };
+    making.outcomes.iter().for_each(|outcome| report.add(outcome, stars.order));
+    let used_stars = UsedStars::new(stars, 0, making.larger, BTreeMap::new());
+    Ok(Batched { system, equations, stars: report, used_stars })
+}
+
+/// What batches are made from, and what was met so far.
+struct Making<'a> {
+    frame: Frame<'a>,
+    around: (&'a Surroundings<'a>, &'a Nearest<'a>),
+    params: StarParams,
+    rule: &'a Rule,
+    larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that are mended
+    sizes: Vec<u32>,                 // of the stars, 0 where not met yet
+    outcomes: Vec<StarOutcome>,
+}
+
+impl Making<'_> {
+    /// The equations of unknowns, ascending, each with the polynomials of the nodes around.
+    fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<Equation>, MfdmError> {
+        let Frame { mesh, node_tris, roles, .. } = self.frame;
+        let triangles = unknowns.iter().flat_map(|&k| node_tris.around(roles.node(k)));
+        let mut nodes: Vec<NodeId> = triangles.flat_map(|t| mesh.tri_nodes()[t.index()]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let stencils = self.stencils(nodes)?;
+        let setting: Setting = self.frame.with(&stencils);
+        let weak = WeakForm::blended(mesh, &stencils, self.frame.fluxes, self.rule);
+        let pieces = map_pieces(0..unknowns.len(), PIECE, |piece| {
+            let mut maker = EquationMaker::new(&setting, &weak);
+            unknowns[piece].iter().map(|&k| maker.of(k)).collect::<Result<Vec<_>, _>>()
+        });
+        Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+    }
+
+    /// The stencils of nodes, ascending, mended ones as they are by now.
+    fn stencils(&mut self, nodes: Vec<NodeId>) -> Result<Stencils, MfdmError> {
+        let mut stencils = Stencils::of_some(self.around, self.params, nodes.clone(), |_| None);
+        let xy = self.frame.mesh.xy();
+        nodes.iter().try_for_each(|node| stencils.require(node.index()..node.index() + 1, xy, 1))?;
+        let mended = nodes.iter().filter_map(|node| Some((*node, *self.larger.get(node)?)));
+        stencils.replace(self.around.0, self.around.1, &mended.collect::<Vec<_>>());
+        for node in nodes {
+            self.sizes[node.index()] = stencils.of(node).nodes.len() as u32;
+            self.outcomes[node.index()] = stencils.outcome(node);
+        }
+        Ok(stencils)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flux::Fluxes;
+    use crate::gauss::six_points;
+    use crate::mend::mend;
+    use crate::problem::HoleCondition;
+    use crate::source::Source;
+    use crate::star::default_star;
+    use crate::system::{Dirichlet, Roles};
+    use crate::variational;
+    use nmt_cloud::{CloudParams, Section, generate};
+    use nmt_curve::Outline;
+    use nmt_tri::{Mesh, NodeTris};
+
+    #[test]
+    fn batches_of_any_size_make_the_equations_of_all_stars_held_at_once() {
+        let section = Section {
+            contour: Outline::rectangle([0.0, 0.0], [2.0, 1.0]),
+            holes: vec![Outline::circle([1.2, 0.5], 0.2)],
+        };
+        let params = CloudParams { nodes: [41, 21], irregularity: 0.45, seed: 3, ..CloudParams::default() };
+        let mesh = Mesh::constrained(generate(&section, &params).expect("a cloud")).expect("a mesh");
+        let surroundings = Surroundings::new(mesh.cloud());
+        let nearest = surroundings.nearest();
+        let n_nodes = mesh.cloud().n_nodes();
+        let conditions = Roles::of_torsion(&mesh, HoleCondition::Circulation);
+        let roles = Roles::new(conditions, mesh.cloud().n_interior(), Dirichlet::Eliminated);
+        let (node_tris, fluxes) = (NodeTris::new(n_nodes, mesh.tri_nodes()), Fluxes::default());
+        let rule = six_points();
+        let source = Source::Constant(2.0);
+        let frame =
+            Frame { mesh: &mesh, node_tris: &node_tris, roles: &roles, source, fluxes: &fluxes, source_rule: &rule };
+        let around = (&surroundings, &nearest);
+        for order in 2..=4 {
+            let stars = StarParams::nearest(order, default_star(order));
+            let mut stencils = Stencils::new(around.0, around.1, stars, 0..n_nodes);
+            let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
+            let mut system = variational::assemble(&frame.with(&stencils), &weak).expect("a system");
+            let larger = mend(frame, around, &rule, &mut stencils, &mut system).expect("a system");
+            assert!(order > 2 || !larger.is_empty(), "some star of order 2 is mended");
+            let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
+            let holes = hole_equations(&mesh, &weak, &node_tris, &roles, Formulation::Variational);
+            for batch in [37, 10_000] {
+                let found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");
+                assert_eq!(found.stars, stencils.report(), "order {order}, {batch} at a time");
+                assert_eq!(found.used_stars, stencils.used(larger.clone()));
+                assert_eq!(found.system.rhs, system.rhs);
+                assert_eq!(found.system.hole_columns, system.hole_columns);
+                for k in 0..system.n() {
+                    let row = |system: &LinearSystem| system.matrix.row(k).entries().collect::<Vec<_>>();
+                    assert_eq!(row(&found.system), row(&system), "order {order}, equation {k}");
+                }
+                assert_eq!(found.equations.len(), 1);
+                assert_eq!(found.equations[0].row.unknowns, holes[0].row.unknowns);
+            }
+        }
+    }
+}
