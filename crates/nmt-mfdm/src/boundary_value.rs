@@ -80,14 +80,14 @@ pub(crate) fn solve_discrete(
     let mended = mended_system(frame, around, params, &rule, &mut stencils)?;
     let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
     let (stars, used_stars) = (stencils.report(), stencils.used(larger));
-    let setting = frame.with(&stencils);
+    let (setting, choice) = (frame.with(&stencils), params.star_choice(mesh.cloud()));
     let space = TrialSpace {
         kind: params.trial,
         mesh,
         stencils: &stencils,
         surroundings: &surroundings,
         nearest: &nearest,
-        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+        params: StarParams { order: params.order, size: stars.size, choice, smoothing: params.smoothing },
     };
     let weak = match params.formulation {
         Formulation::Variational => WeakForm::new(space, fluxes, &rule)?,
@@ -120,8 +120,10 @@ pub(crate) fn solve_discrete(
         NodalPolynomials::linear(mesh, &values)
     } else {
         let order = params.recovery_order();
-        let recovery =
-            StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
+        let recovery = StarParams {
+            choice: params.stars.unwrap_or_default(),
+            ..StarParams::nearest(order, metric.star_size(default_star(order)))
+        };
         NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
@@ -198,7 +200,7 @@ fn stencils_of_equations(
     if params.formulation == Formulation::Fem {
         return Ok(Stencils::constants(n_nodes));
     }
-    let stars = params.star_params(n_nodes, &surroundings.metric())?;
+    let stars = params.star_params(mesh.cloud(), &surroundings.metric())?;
     // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
     let only_interior =
         params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;

@@ -3,6 +3,7 @@
 
 mod convergence;
 mod edges;
+mod graded;
 mod holes;
 mod invariance;
 mod poisson;

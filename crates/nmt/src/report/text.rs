@@ -248,11 +248,12 @@ impl<U: Fn(i32) -> String> Text<U> {
 
     fn stars(&mut self, s: &StarsReport) {
         let smoothing = s.smoothing.map_or(String::new(), |g| format!(", smoothing {}", number(g)));
+        let graded = if s.for_graded_cloud { ", for the cloud is graded" } else { "" };
         let sign = if s.wrong_sign > 0 { format!(", {} of wrong sign", s.wrong_sign) } else { String::new() };
         self.row(
             "stars",
             format!(
-                "of {} nodes, {}{smoothing}: {} enlarged, {} of lower order{sign}, {} hidden nodes skipped, worst condition {:.1}",
+                "of {} nodes, {}{graded}{smoothing}: {} enlarged, {} of lower order{sign}, {} hidden nodes skipped, worst condition {:.1}",
                 s.size, s.choice, s.enlarged, s.order_lowered, s.hidden_nodes_skipped, s.worst_condition
             ),
         );

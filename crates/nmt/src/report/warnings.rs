@@ -149,7 +149,7 @@ fn of_equations(
         ));
     }
     if stars.wrong_sign > 0 {
-        let remedy = match params.stars {
+        let remedy = match stars.choice {
             StarChoice::Nearest => "choose stars = \"balanced\", or more nodes there",
             StarChoice::Balanced => "choose larger stars, or more nodes there",
         };
