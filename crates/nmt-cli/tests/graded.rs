@@ -127,6 +127,31 @@ fn both_ways_to_a_mesh_take_spacings_of_one_to_ten_thousand() {
 }
 
 #[test]
+fn wishes_that_change_nothing_are_told_with_a_remedy() {
+    let directory = scratch("wishes");
+    let warnings = |command: &str, keys: &str| {
+        let file = l_with(&directory, keys);
+        let output = nmt(&[command, &file, "--json"], "2");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let all = json(&output)["warnings"].as_array().expect("warnings").clone();
+        let all: Vec<String> = all.iter().map(|w| w.as_str().expect("a sentence").to_owned()).collect();
+        let nothing: Vec<String> = all.into_iter().filter(|w| w.contains("does nothing")).collect();
+        nothing.iter().for_each(|warning| assert!(stderr(&output).contains(warning.as_str()), "{warning}"));
+        nothing
+    };
+    // The uniform spacing is 0.1. A point may lie outside where its size still reaches in: the notch, and beside the outline.
+    let useless = "density = \"0.1 + 0.05*x\"\nrefine = [{ point = [0.5, 0.5], size = 0.1 }, { edge = \"e1\", size = 0.2 }, \
+                   { point = [1.4, 1.5], size = 1e-3, growth = 0.25 }, { point = [-9, 5], size = 1e-4 }]";
+    insta::assert_snapshot!(warnings("solve", useless).join("\n"));
+    let useful = "density = \"0.09 + 0.05*x\"\nrefine = [{ point = [0.5, 0.5], size = 0.09 }, { edge = \"e1\", size = 0.05 }, \
+                  { point = [1.35, 1.5], size = 1e-3, growth = 0.25 }, { point = [-0.2, 1], size = 1e-4 }]";
+    for command in ["check", "nodes", "mesh", "solve"] {
+        assert_eq!(warnings(command, useful), Vec::<String>::new());
+        assert_eq!(warnings(command, useless).len(), 5, "{command}");
+    }
+}
+
+#[test]
 fn what_shows_only_on_the_way_to_a_cloud_is_told_with_its_place() {
     let directory = scratch("faults");
     let fault = |keys: &str| {

@@ -12,6 +12,7 @@ mod stars;
 mod text;
 mod thickness;
 mod warnings;
+mod wishes;
 
 pub use common::CommonEdgeReport;
 pub use edges::{EdgeReport, LoopReport};

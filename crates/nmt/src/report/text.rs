@@ -24,6 +24,9 @@ pub fn text(report: &Report) -> String {
     for subdomain in &report.subdomains {
         out.subdomain(subdomain);
     }
+    if let Some(each) = report.each_alone {
+        let _ = writeln!(out.out, "Subdomains: {each}.\n");
+    }
     if let Some(common) = report.common_edges.as_ref().filter(|common| !common.is_empty()) {
         out.common_edges(common);
     }
