@@ -288,6 +288,33 @@ fn only_subdomains_with_common_edges_are_said_not_to_add_up() {
 }
 
 #[test]
+fn reports_of_several_subdomains_say_that_each_is_solved_alone_whether_they_touch_or_not() {
+    let directory = scratch("each-alone");
+    let (touching, one) = (row_of_squares(2, ""), row_of_squares(1, ""));
+    let apart = touching.replace("[1, 0], to = [2, 1]", "[1.5, 0], to = [2.5, 1]");
+    let poisson = "[solve]\nsource = \"-2\"\n";
+    let said = |name: &str, problem: &str, command: &str| {
+        let path = file(&directory, name, problem);
+        let report = json(&nmt(&[command, &path, "--json"]));
+        let each = report.get("each_alone").map(|each| each.as_str().expect("a sentence").to_owned());
+        let output = text(&nmt(&[command, &path]).stdout);
+        assert_eq!(output.contains("Subdomains: each subdomain is solved alone"), each.is_some(), "{output}");
+        assert!(each.as_ref().is_none_or(|each| output.contains(&format!("Subdomains: {each}."))), "{output}");
+        each
+    };
+    for command in ["check", "solve"] {
+        for problem in [&touching, &apart] {
+            let torsion = said("torsion.toml", problem, command).expect("two subdomains");
+            assert!(torsion.contains("add up under one twist"), "{torsion}");
+            let each = said("poisson.toml", &format!("{problem}{poisson}"), command).expect("two subdomains");
+            assert!(each.contains("nothing joins u of one to u of another"), "{each}");
+        }
+        assert_eq!(said("one.toml", &one, command), None);
+    }
+    assert_eq!(said("mesh.toml", &apart, "mesh"), None); // nothing is solved
+}
+
+#[test]
 fn three_parts_have_the_same_nodes_on_both_sides_of_all_common_edges_since_two_are_conforming() {
     let directory = scratch("conforming");
     let file_text = std::fs::read_to_string(problem("three-parts.toml")).expect("a problem that ships");

@@ -76,7 +76,7 @@ fn a_tolerance_out_of_reach_ends_with_exit_3_and_the_best_answer() {
     let stderr = text(&output.stderr);
     assert!(stderr.contains("the tolerance 1e-9 is not reached") && stderr.contains("--max-nodes"), "{stderr}");
     let stdout = text(&output.stdout);
-    assert!(stdout.contains("1e-9 of J, not reached on") && stdout.contains("J is between"), "{stdout}");
+    assert!(stdout.contains("1e-9 of J, not reached on") && stdout.contains("J by bounds"), "{stdout}");
     assert!(out.join("report.json").exists() && out.join("solution.svg").exists());
 }
 

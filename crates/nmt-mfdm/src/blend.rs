@@ -114,7 +114,7 @@ impl NodalPolynomials {
             coefficients: Vec::with_capacity(n * n_nodes),
             radii: Vec::with_capacity(n_nodes),
             metric: surroundings.metric(),
-            report: StarReport { size: params.size, ..StarReport::default() },
+            report: StarReport { size: params.size, choice: params.choice, ..StarReport::default() },
         };
         let mut poor = None;
         take_pieces(0..n_nodes, CHUNK, part, |part: Part| {

@@ -84,7 +84,7 @@ pub(crate) fn solve_discrete(
     let assembled = match stencils {
         Some(stencils) => assemble_at_once(frame, around, params, &rule, stencils)?,
         None => {
-            let stars = params.star_params(n_nodes, &metric)?;
+            let stars = params.star_params(mesh.cloud(), &metric)?;
             let Batched { mut system, equations, stars, used_stars } =
                 batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
             steady(frame, (&surroundings, &nearest), params.order, &mut system);
@@ -107,8 +107,10 @@ pub(crate) fn solve_discrete(
         NodalPolynomials::linear(mesh, &values)
     } else {
         let order = params.recovery_order();
-        let recovery =
-            StarParams { choice: params.stars, ..StarParams::nearest(order, metric.star_size(default_star(order))) };
+        let recovery = StarParams {
+            choice: params.stars.unwrap_or_default(),
+            ..StarParams::nearest(order, metric.star_size(default_star(order)))
+        };
         NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
     };
     Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
@@ -145,7 +147,12 @@ fn assemble_at_once(
         stencils: &stencils,
         surroundings,
         nearest,
-        params: StarParams { order: params.order, size: stars.size, choice: params.stars, smoothing: params.smoothing },
+        params: StarParams {
+            order: params.order,
+            size: stars.size,
+            choice: params.star_choice(mesh.cloud()),
+            smoothing: params.smoothing,
+        },
     };
     // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
     let of_holes = (kept(params) == Kept::Laplacian).then(|| {
@@ -258,7 +265,7 @@ fn stencils_of_equations(
     if params.formulation == Formulation::Fem {
         return Ok(Stencils::constants(n_nodes));
     }
-    let stars = params.star_params(n_nodes, &surroundings.metric())?;
+    let stars = params.star_params(mesh.cloud(), &surroundings.metric())?;
     // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
     let only_interior =
         params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;

@@ -96,7 +96,7 @@ impl NodeStar {
         }
         let surroundings = Surroundings::new(cloud);
         let nearest = surroundings.nearest();
-        let stars = params.star_params(cloud.n_nodes(), &surroundings.metric())?;
+        let stars = params.star_params(cloud, &surroundings.metric())?;
         let stencils = Stencils::new(&surroundings, &nearest, stars, node.index()..node.index() + 1);
         Ok(Some(Self::in_stencils(cloud, &surroundings, &stencils, node)))
     }

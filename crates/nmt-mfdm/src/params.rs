@@ -8,6 +8,7 @@ use crate::solver::Solver;
 use crate::star::{StarChoice, default_star};
 use crate::stencils::StarParams;
 use crate::surroundings::Metric;
+use nmt_cloud::Cloud;
 
 /// How a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +21,8 @@ pub struct SolveParams {
     /// Nodes in a star, the centre included; at least the number of monomials. By default 6, 9, 20, 30 for order 1 to 4, and
     /// up to four times as many where the spacings are in a ratio above 2.
     pub star: Option<usize>,
-    /// How they are chosen.
-    pub stars: StarChoice,
+    /// How they are chosen; by default as [`Self::star_choice`] has it.
+    pub stars: Option<StarChoice>,
     /// g of the weight, 0 to 1; 0, the default, interpolates.
     pub smoothing: f64,
     /// Trial functions of the variational formulation.
@@ -40,7 +41,7 @@ impl Default for SolveParams {
             formulation: Formulation::Variational,
             order: 2,
             star: None,
-            stars: StarChoice::Nearest,
+            stars: None,
             smoothing: 0.0,
             trial: Trial::Blended,
             test: Test::Hat,
@@ -92,12 +93,21 @@ impl SolveParams {
         Rule::of(points).ok_or(MfdmError::Gauss { points })
     }
 
-    /// The stars of the equations on a cloud of `n_nodes`.
+    /// How stars are chosen on `cloud` where nothing is said: the nearest nodes on uniform clouds. On graded ones they lie on one
+    /// side where levels meet, and do not cancel what is odd in second derivatives: there `Balanced` at the order 2, and at the
+    /// order 4 of the local equations. Odd orders have nothing to lose, and the weak form of order 4 hardly anything \[D17\].
+    pub fn star_choice(&self, cloud: &Cloud) -> StarChoice {
+        let gains = self.order == 2 || (self.order == 4 && self.formulation == Formulation::Local);
+        let by_default = if cloud.is_graded() && gains { StarChoice::Balanced } else { StarChoice::Nearest };
+        self.stars.unwrap_or(by_default)
+    }
+
+    /// The stars of the equations on `cloud`.
     ///
     /// # Errors
     /// [`MfdmError::StarSize`] where the size asked for is too small for the order, or larger than the cloud.
-    pub(crate) fn star_params(&self, n_nodes: usize, metric: &Metric) -> Result<StarParams, MfdmError> {
-        let (order, least) = (self.order, n_monomials(self.order));
+    pub(crate) fn star_params(&self, cloud: &Cloud, metric: &Metric) -> Result<StarParams, MfdmError> {
+        let (order, least, n_nodes) = (self.order, n_monomials(self.order), cloud.n_nodes());
         let size = match self.star {
             Some(star) if star < least || star > n_nodes => {
                 return Err(MfdmError::StarSize { star, order, least, n_nodes });
@@ -105,6 +115,6 @@ impl SolveParams {
             Some(star) => star,
             None => metric.star_size(default_star(order)).min(n_nodes),
         };
-        Ok(StarParams { order, size, choice: self.stars, smoothing: self.smoothing })
+        Ok(StarParams { order, size, choice: self.star_choice(cloud), smoothing: self.smoothing })
     }
 }

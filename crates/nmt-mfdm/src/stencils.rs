@@ -49,6 +49,8 @@ impl StarParams {
 pub struct StarReport {
     /// Nodes in a star as asked for.
     pub size: usize,
+    /// How they were chosen.
+    pub choice: StarChoice,
     /// Hidden nodes passed over, in all stars together.
     pub hidden_nodes_skipped: usize,
     /// Stars that had to be enlarged.
@@ -502,7 +504,7 @@ impl Stencils {
 
     /// What became of the stars.
     pub fn report(&self) -> StarReport {
-        let mut report = StarReport { size: self.params.size, ..StarReport::default() };
+        let mut report = StarReport { size: self.params.size, choice: self.params.choice, ..StarReport::default() };
         // Constants have no stars.
         self.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), self.params.order));
         report

@@ -14,6 +14,7 @@ mod text;
 mod thickness;
 mod tolerance;
 mod warnings;
+mod wishes;
 
 pub use common::CommonEdgeReport;
 pub use edges::{EdgeReport, LoopReport};

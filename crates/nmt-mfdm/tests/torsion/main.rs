@@ -4,6 +4,7 @@
 mod convergence;
 mod edges;
 mod estimate;
+mod graded;
 mod holes;
 mod invariance;
 mod poisson;

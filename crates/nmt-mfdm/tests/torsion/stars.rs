@@ -229,7 +229,7 @@ fn no_laplacian_row_keeps_a_wrong_sign_on_the_most_irregular_clouds() {
 fn one_star_opened_up_is_the_one_that_the_equations_use() {
     let mesh = mesh(&holed_l(1.0, [0.0, 0.0]), &params([31, 21], 0.25, 3));
     for params in
-        [SolveParams::default(), SolveParams { order: 3, stars: StarChoice::Balanced, ..SolveParams::default() }]
+        [SolveParams::default(), SolveParams { order: 3, stars: Some(StarChoice::Balanced), ..SolveParams::default() }]
     {
         let solution = solve(&TorsionProblem::default(), &mesh, &params).expect("a sound problem");
         let mut hidden = 0;

@@ -68,7 +68,7 @@ pub(super) const POISSON: [Panel; 4] = [
 
 /// Where the error of J comes from.
 pub(super) const INDICATOR: [Panel; 1] = [Panel {
-    name: "Density of the error of J",
+    name: "Density e of the error of J:",
     symbol: "log e",
     subscript: "",
     map: Map::Sequential,

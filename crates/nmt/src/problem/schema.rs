@@ -133,8 +133,8 @@ pub struct SolveSettings {
     ///
     /// At least the number of monomials; that it is no larger than the cloud is known only when there is one.
     pub star: Option<usize>,
-    /// How the nodes of a star are chosen; the nearest by default.
-    pub stars: StarChoice,
+    /// How the nodes of a star are chosen; by default as [`SolveParams::star_choice`] has it.
+    pub stars: Option<StarChoice>,
     /// g of the weight, in [0, 1]; 0, the default, interpolates.
     pub smoothing: f64,
     /// Trial functions of the variational formulation \[D13\].
@@ -178,7 +178,7 @@ impl Default for SolveSettings {
             holes: HoleCondition::default(),
             order: 2,
             star: None,
-            stars: StarChoice::default(),
+            stars: None,
             smoothing: 0.0,
             trial: Trial::default(),
             test: Test::default(),

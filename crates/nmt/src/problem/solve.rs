@@ -122,7 +122,7 @@ impl SolveDraft {
         file.formulation_unread = file.formulation.is_none() && table.get("formulation").is_some();
         settings.formulation = file.formulation.unwrap_or_default();
         settings.holes = word(reader, &table, "holes", "\"circulation\"", limits::hole_condition).unwrap_or_default();
-        settings.stars = word(reader, &table, "stars", "\"balanced\"", limits::stars).unwrap_or_default();
+        settings.stars = word(reader, &table, "stars", "\"balanced\"", limits::stars);
         settings.trial = word(reader, &table, "trial", "\"blended\"", limits::trial).unwrap_or_default();
         settings.test = word(reader, &table, "test", "\"hat\"", limits::test).unwrap_or_default();
         settings.solver = word(reader, &table, "solver", "\"iterative\"", limits::solver).unwrap_or_default();
@@ -203,7 +203,7 @@ impl SolveDraft {
             given.star = Some(Star { n: star.into(), place: known(Key::Star, &star) });
         }
         if let Some(word) = &options.stars {
-            settings.stars = option(faults, &known(Key::Stars, word), limits::stars(word)).unwrap_or_default();
+            settings.stars = option(faults, &known(Key::Stars, word), limits::stars(word));
         }
         if let Some(g) = options.smoothing {
             let place = known(Key::Smoothing, &limits::show(g));

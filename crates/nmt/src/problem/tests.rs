@@ -233,7 +233,7 @@ fn how_it_is_solved_is_read_from_file_and_options() {
         formulation: Formulation::Variational,
         order: 3,
         star: Some(22),
-        stars: StarChoice::Balanced,
+        stars: Some(StarChoice::Balanced),
         smoothing: 0.25,
         trial: Trial::Mwls,
         test: Test::Trial,
@@ -252,7 +252,13 @@ fn how_it_is_solved_is_read_from_file_and_options() {
         solver: Some("auto".into()),
         ..Overrides::default()
     };
-    let expected = SolveParams { order: 1, star: Some(4), gauss: Some(12), ..SolveParams::default() };
+    let expected = SolveParams {
+        order: 1,
+        star: Some(4),
+        stars: Some(StarChoice::Nearest),
+        gauss: Some(12),
+        ..SolveParams::default()
+    };
     assert_eq!(sound(&text, &options).solve.params(None), expected);
 }
 

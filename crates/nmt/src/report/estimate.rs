@@ -40,13 +40,14 @@ impl ErrorEstimateReport {
         })
     }
 
-    /// The bounds of J, in as many digits as tell them apart.
-    pub(super) fn bounds(&self) -> String {
+    /// The bounds of J, in as many digits as tell them apart, with the unit of J.
+    pub(super) fn bounds(&self, unit: &str) -> String {
         let [low, high] = self.j_bounds;
         let distance = (high - low) / high.abs();
         let digits = if distance > 0.0 { (1.5 - distance.log10()).ceil().clamp(7.0, 15.0) as usize } else { 15 };
         let rounded = |bound: f64| format!("{bound:.*e}", digits - 1).parse::<f64>().unwrap_or(bound);
-        format!("{} and {}", rounded(low), rounded(high))
+        let middle = rounded(0.5 * (low + high));
+        format!("{} to {}{unit}, their middle {middle} is the best value", rounded(low), rounded(high))
     }
 
     /// The errors, in the order of the results.

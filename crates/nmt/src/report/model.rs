@@ -12,7 +12,7 @@ use crate::report::singular::singular_vertices;
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::tolerance::ToleranceReport;
-use crate::report::warnings;
+use crate::report::{warnings, wishes};
 use nmt_cloud::{Achieved, Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{MeshCensus, quality};
@@ -32,6 +32,9 @@ pub struct Report {
     pub solves: Option<SolvesReport>,
     /// One entry a subdomain, in the order of the file.
     pub subdomains: Vec<SubdomainReport>,
+    /// How several subdomains are solved; absent with one subdomain, and where nothing is solved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub each_alone: Option<&'static str>,
     /// One entry a common edge, none where the subdomains share nothing; absent with one subdomain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub common_edges: Option<Vec<CommonEdgeReport>>,
@@ -313,7 +316,7 @@ impl Report {
         let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.edge_names, &part.cloud)).collect();
         let mut report = Self::new(problem, subdomains);
         report.common_edges = common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, &part.cloud)));
-        parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, &part.cloud)));
+        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.name, &part.cloud)));
         report
     }
 
@@ -330,7 +333,7 @@ impl Report {
         let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
         report.common_edges =
             common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, part.mesh.cloud())));
-        parts.iter().for_each(|part| report.warnings.extend(warnings::of_cloud(&part.name, part.mesh.cloud())));
+        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.name, part.mesh.cloud())));
         if !problem.mesh.elimination.is_whole() {
             report.warnings.extend(parts.iter().filter_map(warnings::of_mesh));
         }
@@ -345,9 +348,7 @@ impl Report {
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
         let points = points::report(&fields, points, PointValues::of_torsion);
-        for part in parts {
-            report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
-        }
+        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.part.name, part.part.mesh.cloud())));
         report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_solution(part)));
         report.warnings.extend(points.iter().filter_map(warnings::of_point));
@@ -362,9 +363,7 @@ impl Report {
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
         let points = points::report(&fields, points, PointValues::of_poisson);
-        for part in parts {
-            report.warnings.extend(warnings::of_cloud(&part.part.name, part.part.mesh.cloud()));
-        }
+        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.part.name, part.part.mesh.cloud())));
         report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_poisson(part)));
         report.warnings.extend(points.iter().filter_map(warnings::of_point));
@@ -380,9 +379,20 @@ impl Report {
         }
     }
 
+    /// `clouds` are those of the subdomains in order.
+    fn warn_of_clouds<'a>(&mut self, problem: &Problem, clouds: impl Iterator<Item = (&'a str, &'a Cloud)>) {
+        for ((name, cloud), subdomain) in clouds.zip(&problem.subdomains) {
+            self.warnings.extend(warnings::of_cloud(name, cloud));
+            let asked = subdomain.grading.as_ref();
+            self.warnings.extend(asked.into_iter().flat_map(|asked| wishes::without_effect(name, asked, cloud)));
+        }
+    }
+
     fn warn_of_sections<'a>(&mut self, problem: &Problem, sections: impl Iterator<Item = (&'a str, &'a Section)>) {
         let common = self.common_edges.as_deref().unwrap_or_default();
         let names = self.subdomains.iter().map(|subdomain| &*subdomain.name);
+        let each = if problem.solve.poisson.is_none() { warnings::EACH_BAR } else { warnings::EACH_PROBLEM };
+        self.each_alone = (self.subdomains.len() > 1).then_some(each);
         if let Some(poisson) = &problem.solve.poisson {
             // With the exact solution at hand nothing need be guessed.
             if poisson.exact.is_none() {
@@ -406,6 +416,7 @@ impl Report {
             units: problem.units.clone(),
             solves: None,
             subdomains,
+            each_alone: None,
             common_edges: None,
             points: None,
             totals: Totals { nodes, ..Totals::default() },

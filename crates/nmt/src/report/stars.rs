@@ -1,6 +1,6 @@
 //! What the report says of the equations: their functions, their stars.
 
-use nmt_mfdm::{Formulation, SolveParams, StarReport, default_gauss};
+use nmt_mfdm::{Formulation, SolveParams, StarChoice, StarReport, default_gauss};
 use serde::Serialize;
 
 /// How the variational form is made equations.
@@ -30,6 +30,9 @@ pub struct StarsReport {
     pub size: usize,
     /// How they are chosen.
     pub choice: &'static str,
+    /// Present, and true, where nothing is said of that, and they are balanced since the cloud is graded.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub for_graded_cloud: bool,
     /// g of the weight, where it smooths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<f64>,
@@ -48,12 +51,13 @@ pub struct StarsReport {
 impl StarsReport {
     /// Of the meshless formulations; finite elements have no stars.
     pub(super) fn of(params: &SolveParams, report: &StarReport) -> Option<Self> {
-        let StarReport { size, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, wrong_sign } = *report;
+        let StarReport { size, choice, hidden_nodes_skipped, enlarged, order_lowered, worst_condition, wrong_sign } =
+            *report;
         let smoothing = (params.smoothing > 0.0).then_some(params.smoothing);
-        let choice = params.stars.name();
         let stars = Self {
             size,
-            choice,
+            choice: choice.name(),
+            for_graded_cloud: params.stars.is_none() && choice == StarChoice::Balanced,
             smoothing,
             hidden_nodes_skipped,
             enlarged,

@@ -25,6 +25,9 @@ pub fn text(report: &Report) -> String {
     for subdomain in &report.subdomains {
         out.subdomain(subdomain);
     }
+    if let Some(each) = report.each_alone {
+        let _ = writeln!(out.out, "Subdomains: {each}.\n");
+    }
     if let Some(common) = report.common_edges.as_ref().filter(|common| !common.is_empty()) {
         out.common_edges(common);
     }
@@ -154,7 +157,7 @@ impl<U: Fn(i32) -> String> Text<U> {
         }
         self.row("J = T/(Gθ)", format!("{}{u4}, torsion constant", number(s.j)));
         if let Some(estimate) = &s.error_estimate {
-            self.row("J is between", format!("{}{u4}", estimate.bounds()));
+            self.row("J by bounds", estimate.bounds(&u4));
             self.row("estimated errors", estimate.errors());
         }
         if let Some(tolerance) = &s.tolerance {
@@ -272,11 +275,12 @@ impl<U: Fn(i32) -> String> Text<U> {
 
     fn stars(&mut self, s: &StarsReport) {
         let smoothing = s.smoothing.map_or(String::new(), |g| format!(", smoothing {}", number(g)));
+        let graded = if s.for_graded_cloud { ", for the cloud is graded" } else { "" };
         let sign = if s.wrong_sign > 0 { format!(", {} of wrong sign", s.wrong_sign) } else { String::new() };
         self.row(
             "stars",
             format!(
-                "of {} nodes, {}{smoothing}: {} enlarged, {} of lower order{sign}, {} hidden nodes skipped, worst condition {:.1}",
+                "of {} nodes, {}{graded}{smoothing}: {} enlarged, {} of lower order{sign}, {} hidden nodes skipped, worst condition {:.1}",
                 s.size, s.choice, s.enlarged, s.order_lowered, s.hidden_nodes_skipped, s.worst_condition
             ),
         );

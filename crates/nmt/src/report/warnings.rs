@@ -150,7 +150,7 @@ fn of_equations(
         ));
     }
     if stars.wrong_sign > 0 {
-        let remedy = match params.stars {
+        let remedy = match stars.choice {
             StarChoice::Nearest => "choose stars = \"balanced\", or more nodes there",
             StarChoice::Balanced => "choose larger stars, or more nodes there",
         };
@@ -175,6 +175,12 @@ fn of_equations(
     }
     warnings
 }
+
+/// How several subdomains are solved, whether they touch or not: bars under torsion.
+pub(super) const EACH_BAR: &str = "each subdomain is solved alone, with F = 0 on its whole outline; the torques of bars that are apart add up under one twist";
+/// The same of a Poisson problem.
+pub(super) const EACH_PROBLEM: &str =
+    "each subdomain is solved alone, with its own values and fluxes; nothing joins u of one to u of another";
 
 /// What it means that subdomains with common edges are solved each alone: in torsion, the paper's way.
 pub(super) const TORSION_ALONE: &str =

@@ -1,0 +1,57 @@
+//! Wishes for the spacing that change nothing, told instead of passed over.
+
+use crate::problem::GradingSettings;
+use crate::report::text::{number, place};
+use nmt_cloud::{Cloud, Refinement, Target};
+use nmt_geom::segment::distance_to;
+use nmt_geom::{Location, Point};
+
+/// Warnings of `density` and of each item of `refine` that nowhere ask for less than the uniform spacing.
+pub(super) fn without_effect(name: &str, asked: &GradingSettings, cloud: &Cloud) -> Vec<String> {
+    let Some(lattice) = cloud.nested_lattice() else { return Vec::new() };
+    let most = lattice.max_spacing();
+    let mut warnings = Vec::new();
+    let uniform = number(most);
+    if let Some(density) = &asked.density {
+        let nodes = cloud.xy().iter();
+        let least = nodes.map(|p| density.expression.eval(p)).fold(f64::INFINITY, f64::min);
+        if least >= most {
+            warnings.push(format!(
+                "subdomain \"{name}\": `density` does nothing: it is {} or more, and the uniform spacing of `nodes` is {uniform} \
+                 already; let it ask for less somewhere, or leave it out",
+                number(least)
+            ));
+        }
+    }
+    for (k, Refinement { target, size, growth }) in asked.refine.iter().enumerate() {
+        let item = k + 1;
+        if *size >= most {
+            warnings.push(format!(
+                "subdomain \"{name}\": `refine` item {item} does nothing: its size is {}, and the uniform spacing of `nodes` is \
+                 {uniform} already; give a smaller size, or leave it out",
+                number(*size)
+            ));
+            continue;
+        }
+        let Target::Point(p) = target else { continue };
+        let away = distance_from(cloud, *p);
+        if size + growth * away >= most {
+            warnings.push(format!(
+                "subdomain \"{name}\": `refine` item {item} does nothing: its point {} lies {} outside the section, where the \
+                 spacing has grown back to the uniform one, {uniform}; correct the point, or let it grow more slowly",
+                place(*p),
+                number(away)
+            ));
+        }
+    }
+    warnings
+}
+
+/// How far `p` is from the section, 0 inside.
+fn distance_from(cloud: &Cloud, p: Point) -> f64 {
+    let boundary = cloud.boundary();
+    match boundary.index().locate(p) {
+        Location::Inside | Location::OnBoundary => 0.0,
+        Location::Outside => boundary.all_ends().map(|[a, b]| distance_to(p, a, b)).fold(f64::INFINITY, f64::min),
+    }
+}
