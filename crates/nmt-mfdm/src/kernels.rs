@@ -73,7 +73,9 @@ impl Kernel {
             let volume = |_| Ok(NodalPolynomials::fit(&surroundings, &nearest, params, &values)?.volume(mesh));
             return (0..times).map(volume).sum();
         }
-        let stencils = rows();
+        // As the solution has them: the local equations take the rows of ∇² alone.
+        let kept = if self == Self::VariationalAssembly { Kept::Derivatives } else { Kept::Laplacian };
+        let stencils = Stencils::meeting((&surroundings, &nearest), params, kept, 0..n_nodes, |_| None, &mut |_| {});
         let conditions = Roles::of_torsion(mesh, HoleCondition::Circulation);
         let roles = Roles::new(conditions, mesh.cloud().n_interior(), Dirichlet::Eliminated);
         let (node_tris, fluxes) = (NodeTris::new(n_nodes, mesh.tri_nodes()), Fluxes::default());

@@ -463,18 +463,13 @@ impl Stencils {
     /// What each node of the star contributes to ∇²u at its centre, times the square of the star's radius.
     pub(crate) fn laplacian(&self, node: NodeId) -> impl Iterator<Item = (NodeId, f64)> {
         let Stencil { nodes, rows, .. } = self.of(node);
-        let n = nodes.len();
+        let row_of = |m: usize| &rows[(m - self.params.first_row()) * nodes.len()..];
         let [s_x, s_y] = self.metric.stretch().map(|stretch| stretch * stretch);
-        let first = |m: usize| (m - self.params.first_row()) * n;
-        let (xx, yy) = match self.kept {
-            Kept::Derivatives => (first(row(2, 0)), first(row(0, 2))),
-            Kept::Laplacian => (0, 0),
+        let ((xx, s_x), (yy, s_y)) = match self.kept {
+            Kept::Derivatives => ((row_of(row(2, 0)), s_x), (row_of(row(0, 2)), s_y)),
+            Kept::Laplacian => ((rows, 1.0), (rows, 0.0)),
         };
-        let kept = self.kept;
-        nodes.iter().enumerate().map(move |(k, &other)| match kept {
-            Kept::Derivatives => (other, rows[xx + k] * s_x + rows[yy + k] * s_y),
-            Kept::Laplacian => (other, rows[k]),
-        })
+        nodes.iter().zip(xx.iter().zip(yy)).map(move |(&other, (xx, yy))| (other, xx * s_x + yy * s_y))
     }
 
     /// What the polynomial of a node meets of its gradient.
