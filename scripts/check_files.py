@@ -120,7 +120,7 @@ for problem in sorted(problems.glob("*.toml")):
         check_edges(where, rows, report, problem)
     check_msh.check(where / "mesh.msh", [part["name"] for part in report["subdomains"]], rows, mesh, expect)
 
-    for picture in ("nodes", "mesh", "solution") if is_poisson else ("nodes", "mesh", "solution", "edges"):
+    for picture in ("nodes", "mesh", "solution") if is_poisson else ("nodes", "mesh", "solution", "edges", "error"):
         root = xml.etree.ElementTree.parse(where / f"{picture}.svg").getroot()
         expect(root.tag.endswith("svg"), f"{problem}: {picture}.svg is no SVG")
         head = (where / f"{picture}.png").read_bytes()[:24]

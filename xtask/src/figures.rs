@@ -3,7 +3,7 @@
 use crate::golden::read_problem;
 use crate::root;
 use anyhow::{Context as _, Result};
-use nmt::figures::{edges_svg, nodes_svg, solution_svg, stages_svg, star_svg};
+use nmt::figures::{edges_svg, error_svg, nodes_svg, solution_svg, stages_svg, star_svg};
 use nmt::pipeline::{clouds, meshes};
 use nmt::prelude::*;
 use nmt::star::StarView;
@@ -17,6 +17,18 @@ const EDGES: &str = "i-section";
 
 /// The problem whose cloud the documentation shows.
 const GRADED: &str = "graded-l";
+
+/// The problem of which the documentation shows where its error comes from: a fillet and a hole, both small.
+const UNCERTAIN: &str = r#"
+title = "An L with a fillet and a hole of 1/100 of its size"
+[[subdomain]]
+nodes = [21, 21]
+outline = [[0, 0], [2, 0], [2, 1], [1.02, 1], { arc = { centre = [1.02, 1.02], ccw = false } }, [1, 1.02], [1, 2], [0, 2]]
+[[subdomain.hole]]
+circle = { centre = [0.4, 0.4], radius = 0.02 }
+[solve]
+tolerance = 1e-4
+"#;
 
 /// The problem whose mesh the documentation shows in its four stages.
 const STAGES: &str = "bare-segment";
@@ -32,6 +44,8 @@ pub fn draw() -> Result<()> {
     }
     let problem = shipped(EDGES)?;
     write("edges", &edges_svg(&problem, &solve_problem(&problem)?))?;
+    let problem = Problem::parse("uncertain.toml", UNCERTAIN, &Overrides::default()).map_err(nmt::NmtError::Problem)?;
+    write("error", &error_svg(&problem, &solve_problem(&problem)?).context("an estimate")?)?;
     let problem = shipped(GRADED)?;
     let parts = clouds(&problem, &mut |_, _| {})?;
     write(GRADED, &nodes_svg(&problem, parts.iter().map(|part| (part.name.as_str(), &part.cloud))))?;
