@@ -82,6 +82,16 @@ fn a_tolerance_that_cannot_be_reached_leaves_the_best_solution() -> Result<(), N
     Ok(())
 }
 
+/// Graded clouds are square lattices: what h_x and h_y unlike each other had is not lost.
+#[test]
+fn unequal_spacings_do_not_cost_nodes() -> Result<(), NmtError> {
+    let wedge = "outline = [[0, 0], [2, 0], [2, 0.35]]";
+    let solved = solve(wedge, "", "tolerance = 1e-5\norder = 4")?;
+    let nodes: Vec<usize> = solved.history.iter().map(|step| step.nodes).collect();
+    assert!(nodes.len() > 1 && nodes.windows(2).all(|pair| pair[1] > pair[0]), "{nodes:?}");
+    Ok(())
+}
+
 #[test]
 fn conforming_subdomains_keep_their_common_nodes() -> Result<(), NmtError> {
     let text = "[[subdomain]]\nname = \"a\"\nnodes = [15, 15]\nconforming = true\n\

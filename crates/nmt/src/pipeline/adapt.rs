@@ -152,7 +152,7 @@ impl Step {
 /// What the next cloud shall be refined to; `None` where the tolerance is met, or would take too many nodes.
 fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec<Refinement>> {
     let cloud = solved.part.mesh.cloud();
-    let spacing = |node: usize| cloud.local_spacing(NodeId::of(node));
+    let spacing = spacings(solved);
     let (factors, corners) = match solved.estimate.made() {
         Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return None,
         Some(estimate) => {
@@ -168,11 +168,21 @@ fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec
     }
     let at = |(node, factor): (usize, f64)| Refinement {
         target: Target::Point(cloud.xy()[node]),
-        size: (factor * spacing(node)).max(least_spacing(solved)),
+        size: (factor * spacing[node]).max(least_spacing(solved)),
         growth: DEFAULT_GROWTH,
     };
     let everywhere = factors.into_iter().enumerate().map(at);
     Some(everywhere.chain(corners).collect())
+}
+
+/// The spacing at every node of a graded cloud; of one with unequal h_x and h_y that of a square lattice as dense, since graded
+/// ones are such lattices.
+fn spacings(solved: &SolvedPart) -> Vec<f64> {
+    let cloud = solved.part.mesh.cloud();
+    let [h_x, h_y] = cloud.spacing();
+    let even = (h_x * h_y).sqrt();
+    let of_node = |node: usize| cloud.local_spacing(NodeId::of(node));
+    (0..cloud.n_nodes()).map(|node| if cloud.is_graded() { of_node(node) } else { even }).collect()
 }
 
 /// The least spacing of a cloud, and some room to it.
