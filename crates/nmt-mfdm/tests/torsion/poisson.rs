@@ -242,11 +242,16 @@ fn no_node_of_an_irregular_cloud_wanders_in_the_variational_form() {
 fn no_node_wanders_at_high_irregularity_where_larger_stars_do_not_help() {
     let section = Section::solid(Outline::ellipse([0.0, 0.0], [1.0, 0.6], 0.3));
     // Without predictions 2.1e-2, 4.7e-2, 8.0e-3 in order 2 and 6.0e-4 in order 4; with them 2.8e-4, 4.8e-4, 2.6e-4, 4e-6.
-    for (order, seed, within) in [(2, 4, 6e-4), (2, 6, 1e-3), (2, 12, 6e-4), (4, 3, 1e-5)] {
-        let cloud = CloudParams { nodes: [81, 81], irregularity: 0.4, seed, ..CloudParams::default() };
+    // At 0.49 4.5e-4, 5.5e-4, 1.2e-6; seed 4, with a cluster that moves at a gain, 5.5e-2 where E alone is added, and pairs are
+    // sought by one of the two rows.
+    let at_high = [(0.4, 2, 4, 6e-4), (0.4, 2, 6, 1e-3), (0.4, 2, 12, 6e-4), (0.4, 4, 3, 1e-5)];
+    let at_most = [(0.49, 2, 4, 1.5e-3), (0.49, 2, 12, 1.5e-3), (0.49, 4, 3, 1e-5)];
+    for (irregularity, order, seed, within) in at_high.into_iter().chain(at_most) {
+        let cloud = CloudParams { nodes: [81, 81], irregularity, seed, ..CloudParams::default() };
         let mesh = Mesh::constrained(generate(&section, &cloud).expect("a cloud")).expect("a mesh");
         let found = error(&section, &mesh, &WAVES, &[], &params(Formulation::Variational, order));
-        assert!(found < within, "order {order}, seed {seed}: {found:e}");
+        println!("{irregularity} order {order}, seed {seed}: {found:e}");
+        assert!(found < within, "{irregularity}, order {order}, seed {seed}: {found:e}");
     }
 }
 
