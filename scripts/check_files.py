@@ -82,7 +82,15 @@ for problem in sorted(problems.glob("*.toml")):
         values = np.concatenate([part[key] for part in stars])
         expect(np.array_equal(values, mesh.point_data[f"star_{key}"]), f"{problem}: star_{key} of stars.json and mesh.vtu differ")
     expect(mesh.point_data["star_residual"].max() < 1e-10, f"{problem}: rows do not reproduce their monomials")
-    expect(set(mesh.cell_data) == {"subdomain", "area", "quality", "residual"}, f"{problem}: cell data")
+    indicators = set() if is_poisson else {"error_indicator"}
+    expect(set(mesh.cell_data) == {"subdomain", "area", "quality", "residual"} | indicators, f"{problem}: cell data")
+    for k, subdomain in enumerate(report["subdomains"] if indicators else []):
+        # What the triangles contribute sums to the distance of the bounds, and more at curved edges.
+        estimate, (low, high) = subdomain["error_estimate"], subdomain["error_estimate"]["J_bounds"]
+        own = mesh.cell_data["error_indicator"][0][mesh.cell_data["subdomain"][0] == k]
+        expect(own.min() >= 0 and own.sum() >= (high - low) * (1 - 1e-6) - 1e-13 * high, f"{problem}: error_indicator")
+        off = max(abs(subdomain["J"] - low), abs(subdomain["J"] - high))
+        expect(off <= estimate["J"] * (1 + 1e-9) and abs(estimate["J"] / subdomain["J"] - estimate["J_relative"]) < 1e-15, f"{problem}: {estimate}")
     xy = np.array([[float(row["x"]), float(row["y"])] for row in rows])
     expect(np.array_equal(xy, mesh.points[:, :2]), f"{problem}: coordinates of nodes.csv and mesh.vtu differ")
     for name in fields:

@@ -4,7 +4,7 @@
 //! order. It is the trial space of the variational form and the recovered field of every result (a partition of unity
 //! of nodal polynomials, as in the FE–meshfree methods of Rajendran and Zhang, 2007).
 
-use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
+use crate::basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
 use crate::error::MfdmError;
 use crate::gauss::{Rule, seven_points, six_points};
 use crate::mwls::dot;
@@ -241,6 +241,44 @@ impl NodalPolynomials {
         field
     }
 
+    /// Value and gradient of the blend at `p` in `triangle`, as [`Self::blend`] has them.
+    pub(crate) fn slope(&self, mesh: &Mesh, triangle: TriId, p: Point) -> (f64, [f64; 2]) {
+        match self.blended_order {
+            0 => self.slope_of_order::<0>(mesh, triangle, p),
+            1 => self.slope_of_order::<1>(mesh, triangle, p),
+            2 => self.slope_of_order::<2>(mesh, triangle, p),
+            3 => self.slope_of_order::<3>(mesh, triangle, p),
+            _ => self.slope_of_order::<MAX_ORDER>(mesh, triangle, p),
+        }
+    }
+
+    fn slope_of_order<const ORDER: usize>(&self, mesh: &Mesh, triangle: TriId, p: Point) -> (f64, [f64; 2]) {
+        let corners = mesh.corners(triangle);
+        let (lambda, slopes) = (barycentric(corners, p), barycentric_gradients(corners));
+        let (mut value, mut gradient) = (0.0, [0.0; 2]);
+        let mut basis = [0.0; MAX_MONOMIALS];
+        for (a, &node) in mesh.tri_nodes()[triangle.index()].iter().enumerate() {
+            let (c, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
+            monomials([(p[0] - corners[a][0]) * s_x, (p[1] - corners[a][1]) * s_y], ORDER, &mut basis);
+            let (mut own, mut along) = (c[0], [0.0; 2]);
+            for degree in 1..=ORDER {
+                for b in 0..=degree {
+                    own += c[row(degree - b, b)] * basis[row(degree - b, b)];
+                }
+                // The derivative of hᵃkᵇ/(a! b!) along h is the monomial (a − 1, b).
+                for b in 0..degree {
+                    let lower = basis[row(degree - 1 - b, b)];
+                    along[0] += c[row(degree - b, b)] * lower;
+                    along[1] += c[row(degree - 1 - b, b + 1)] * lower;
+                }
+            }
+            value += lambda[a] * own;
+            gradient[0] += own * slopes[a][0] + lambda[a] * along[0] * s_x;
+            gradient[1] += own * slopes[a][1] + lambda[a] * along[1] * s_y;
+        }
+        (value, gradient)
+    }
+
     /// Integral of a quantity of the blend over a triangle by `rule`.
     pub fn integrate(&self, mesh: &Mesh, triangle: TriId, rule: &Rule, of: impl Fn(&FieldValue) -> f64) -> f64 {
         let corners = mesh.corners(triangle);
@@ -290,4 +328,36 @@ impl NodalPolynomials {
 pub fn barycentric_gradients([a, b, c]: [Point; 3]) -> [[f64; 2]; 3] {
     let twice_area = cross(sub(b, a), sub(c, a));
     [(b, c), (c, a), (a, b)].map(|(p, q)| [(p[1] - q[1]) / twice_area, (q[0] - p[0]) / twice_area])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nmt_cloud::{CloudParams, Section, generate};
+    use nmt_curve::Outline;
+
+    #[test]
+    fn slopes_are_those_of_the_blend() -> Result<(), Box<dyn std::error::Error>> {
+        let square = Section::solid(Outline::rectangle([0.0, 0.0], [2.0, 1.0]));
+        let params = CloudParams { nodes: [13, 9], irregularity: 0.3, ..CloudParams::default() };
+        let mesh = Mesh::constrained(generate(&square, &params)?)?;
+        let values: Vec<f64> = mesh.xy().iter().map(|p| (2.0 * p[0]).sin() * (1.0 + p[1]).exp()).collect();
+        let surroundings = Surroundings::new(mesh.cloud());
+        let nearest = surroundings.nearest();
+        let mut fields = vec![NodalPolynomials::linear(&mesh, &values)];
+        for (order, size) in [(1, 6), (2, 9), (3, 20), (4, 30)] {
+            fields.push(NodalPolynomials::fit(&surroundings, &nearest, StarParams::nearest(order, size), &values)?);
+        }
+        for field in &fields {
+            for t in mesh.triangles() {
+                let [a, b, c] = mesh.corners(t);
+                let p = [0, 1].map(|d| 0.5 * a[d] + 0.3 * b[d] + 0.2 * c[d]);
+                let (blend, (value, gradient)) = (field.blend(&mesh, t, p), field.slope(&mesh, t, p));
+                let close = |x: f64, y: f64| (x - y).abs() <= 1e-12 * (1.0 + x.abs()); // rounding
+                assert!(close(blend.value, value), "order {}", field.order());
+                assert!((0..2).all(|d| close(blend.gradient[d], gradient[d])), "order {}", field.order());
+            }
+        }
+        Ok(())
+    }
 }

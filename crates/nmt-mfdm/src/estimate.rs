@@ -149,9 +149,9 @@ struct Both<'a> {
 impl Both<'_> {
     /// [v, ∇v, σ] for Gθ = 1 at `p`, continued from `triangle`.
     fn at(&self, triangle: TriId, p: Point) -> (f64, Point, Point) {
-        let v = self.solution.field.blend(self.mesh, triangle, p);
+        let (v, gradient) = self.solution.field.slope(self.mesh, triangle, p);
         let scale = 1.0 / self.solution.g_theta;
-        (v.value * scale, v.gradient.map(|slope| slope * scale), self.warping.stress_at(self.mesh, triangle, p))
+        (v * scale, gradient.map(|slope| slope * scale), self.warping.stress_at(self.mesh, triangle, p))
     }
 
     fn over_triangles(&self) -> Vec<Parts> {

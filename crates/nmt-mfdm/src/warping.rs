@@ -78,7 +78,7 @@ impl Warping {
 
     /// σ at `p` in `triangle`.
     pub fn stress_at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
-        self.with_rotation(p, self.field.blend(mesh, triangle, p).gradient)
+        self.with_rotation(p, self.field.slope(mesh, triangle, p).1)
     }
 
     /// σ at a node, of its own polynomial.
