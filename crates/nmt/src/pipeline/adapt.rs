@@ -49,12 +49,14 @@ const AIM: f64 = 0.6;
 const CORNERS: f64 = 0.05;
 
 /// Solves torsion in all subdomains, each on clouds that are refined until the estimated error of its J is at most
-/// `tolerance`·J, or until that would take more nodes than [`crate::problem::SolveSettings::max_nodes`]: then the best of them. [`Step::of`] the solution tells.
+/// `tolerance`·J, or until that would take more nodes than [`crate::problem::SolveSettings::max_nodes`]: then the best of
+/// them, or of conforming subdomains the last, whose clouds fit together. [`Step::of`] the solution tells.
 ///
 /// The first clouds are those of the file; refined ones are never coarser than that spacing.
 ///
 /// # Errors
-/// As [`super::clouds`], [`super::meshes`] and [`super::solutions`], for the first clouds; those of finer ones end the refinement.
+/// As [`super::clouds`], [`super::meshes`] and [`super::solutions`], for the first clouds; those of finer ones end the
+/// refinement.
 pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) -> Result<Vec<SolvedPart>, NmtError> {
     if let Some(fault) = torsion_fault(problem, "has no torsion", "leave it out, or call solve_any") {
         return Err(NmtError::Problem(vec![fault]));
@@ -89,7 +91,9 @@ pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) 
             wanted.fill(true);
         }
     }
-    Ok(ways.into_iter().filter_map(Way::best).collect())
+    // Conforming clouds fit together only if they are of one round.
+    let of = |way: Way| if is_conforming { way.newest() } else { way.best() };
+    Ok(ways.into_iter().filter_map(of).collect())
 }
 
 /// The solutions of one subdomain.
@@ -111,6 +115,10 @@ impl Way {
     fn best(self) -> Option<SolvedPart> {
         let best = better(self.before, self.latest)?;
         Some(SolvedPart { history: self.history, ..best })
+    }
+
+    fn newest(self) -> Option<SolvedPart> {
+        Some(SolvedPart { history: self.history, ..self.latest? })
     }
 }
 
