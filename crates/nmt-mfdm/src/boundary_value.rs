@@ -38,6 +38,8 @@ pub(crate) struct Discrete<'a> {
     pub conditions: Vec<NodeCondition>,
     pub source: Source<'a>,
     pub fluxes: &'a Fluxes,
+    /// ‖b − Ax‖/‖b‖ of the linear system that an iteration goes on to.
+    pub target: f64,
 }
 
 /// What came of it.
@@ -63,7 +65,7 @@ pub(crate) fn solve_discrete(
     observer: &mut dyn FnMut(Event),
 ) -> Result<Solved, MfdmError> {
     params.check()?;
-    let Discrete { mesh, conditions, source, fluxes } = discrete;
+    let Discrete { mesh, conditions, source, fluxes, target } = discrete;
     let surroundings = Surroundings::new(mesh.cloud());
     let metric = surroundings.metric();
     let nearest = surroundings.nearest();
@@ -95,7 +97,7 @@ pub(crate) fn solve_discrete(
     observer(Event::Ended(Stage::Assemble));
 
     let Nodal { values, constants, linear } =
-        solve_system(&system, mesh.xy(), &equations, &roles, params.solver, observer)?;
+        solve_system(&system, mesh.xy(), &equations, &roles, (params.solver, target), observer)?;
     drop(system);
     let values = match stencils {
         Some(stencils) => smoothed(&stencils, mesh.xy(), values),
@@ -191,7 +193,7 @@ pub(crate) fn star_of_equations(
     node: NodeId,
 ) -> Result<Option<NodeStar>, MfdmError> {
     params.check()?;
-    let Discrete { mesh, conditions, source, fluxes } = discrete;
+    let Discrete { mesh, conditions, source, fluxes, .. } = discrete;
     if params.formulation == Formulation::Fem || node.index() >= mesh.cloud().n_nodes() {
         return Ok(None);
     }
@@ -335,7 +337,7 @@ fn solve_system(
     xy: &[Point],
     equations: &[Equation],
     roles: &Roles,
-    choice: Solver,
+    (choice, target): (Solver, f64),
     observer: &mut dyn FnMut(Event),
 ) -> Result<Nodal, MfdmError> {
     let mut right_sides = vec![system.rhs.clone()];
@@ -344,7 +346,8 @@ fn solve_system(
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
         right_sides.push(b);
     }
-    let solver::Solutions { x, how } = solver::solve(system, &roles.places(xy), &right_sides, choice, observer)?;
+    let solver::Solutions { x, how } =
+        solver::solve(system, &roles.places(xy), &right_sides, choice, target, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };

@@ -8,6 +8,7 @@ use crate::params::SolveParams;
 use crate::poisson::PoissonProblem;
 use crate::problem::{Formulation, TorsionProblem};
 use crate::repair::StarOutcome;
+use crate::solver::TARGET;
 use crate::source::Source;
 use crate::star::StarChoice;
 use crate::stencils::Stencils;
@@ -69,7 +70,11 @@ impl NodeStar {
         problem.check()?;
         let conditions = Roles::of_torsion(mesh, problem.holes);
         let fluxes = Fluxes::default();
-        star_of_equations(Discrete { mesh, conditions, source: Source::Constant(2.0), fluxes: &fluxes }, params, node)
+        star_of_equations(
+            Discrete { mesh, conditions, source: Source::Constant(2.0), fluxes: &fluxes, target: TARGET },
+            params,
+            node,
+        )
     }
 
     /// The star of `node` in the equations of a Poisson problem, as [`Self::in_torsion`].

@@ -10,7 +10,7 @@ use crate::parallel::map_chunks;
 use crate::params::SolveParams;
 use crate::post::residuals_against;
 use crate::solve::{Event, Stage};
-use crate::solver::LinearSolve;
+use crate::solver::{LinearSolve, TARGET};
 use crate::source::Source;
 use crate::stencils::StarReport;
 use crate::system::NodeCondition;
@@ -131,7 +131,7 @@ impl PoissonProblem<'_> {
         let is_free = |node: &usize| conditions[*node] == NodeCondition::Flux;
         let free: Vec<NodeId> = (0..conditions.len()).filter(is_free).map(NodeId::of).collect();
         let fluxes = Fluxes::new(mesh, self.section, &self.fluxes, &free)?;
-        work(Discrete { mesh, conditions, source: Source::Minus(self.source), fluxes: &fluxes })
+        work(Discrete { mesh, conditions, source: Source::Minus(self.source), fluxes: &fluxes, target: TARGET })
     }
 
     /// The condition at each boundary node.

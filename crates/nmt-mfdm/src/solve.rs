@@ -8,6 +8,7 @@ use crate::params::SolveParams;
 use crate::post::{extremes, torque};
 use crate::problem::TorsionProblem;
 use crate::solution::{HoleResult, TorsionSolution};
+use crate::solver::TARGET;
 use crate::source::Source;
 use crate::system::Roles;
 use nmt_tri::Mesh;
@@ -88,6 +89,7 @@ pub fn solve_observed(
         conditions: Roles::of_torsion(mesh, problem.holes),
         source: Source::Constant(2.0),
         fluxes: &Fluxes::default(),
+        target: TARGET,
     };
     let solved = solve_discrete(discrete, params, observer)?;
     let unknowns = solved.unknowns;

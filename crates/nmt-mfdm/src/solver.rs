@@ -31,7 +31,10 @@ pub(crate) const MAX_RESIDUAL: f64 = 1.0e-9;
 ///
 /// Rounding alone leaves 1e-16 times the number of unknowns, so that beyond 10⁶ this may not be reached: the iteration
 /// then ends where it stands still, and [`MAX_RESIDUAL`] decides.
-const LIMITS: Limits = Limits { target: 1.0e-10, iterations: 200 };
+const LIMITS: Limits = Limits { target: TARGET, iterations: 200 };
+
+/// The residual that the iteration goes on to, where nothing less will do.
+pub(crate) const TARGET: f64 = 1.0e-10;
 
 /// Entries a_ij and a_ji of a symmetric matrix differ by rounding only: by this part of the diagonals.
 const SYMMETRIC_REL: f64 = 1.0e-12;
@@ -47,7 +50,8 @@ pub(crate) struct Solutions {
 
 /// Solves A·x = b for every right side, with one set-up for all.
 ///
-/// `xy` are the places of the unknowns, shape (n, 2). Where the iteration does not converge, the direct solver takes over.
+/// `xy` are the places of the unknowns, shape (n, 2); `target` is the relative residual that an iteration goes on to. Where
+/// it does not converge, the direct solver takes over.
 ///
 /// # Errors
 /// [`MfdmError::Singular`], [`MfdmError::Memory`], or [`MfdmError::Residual`] where no solver finds a solution.
@@ -56,9 +60,10 @@ pub(crate) fn solve(
     xy: &[Point],
     right_sides: &[Vec<f64>],
     choice: Solver,
+    target: f64,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Solutions, MfdmError> {
-    solve_within(system, xy, right_sides, choice, LIMITS, observer)
+    solve_within(system, xy, right_sides, choice, Limits { target, ..LIMITS }, observer)
 }
 
 fn solve_within(
@@ -100,7 +105,7 @@ fn iterate(
             Symmetry::Symmetric => krylov::cg(matrix, b, &mut x, limits, cycle, &mut told),
             Symmetry::Unsymmetric => krylov::bicgstab(matrix, b, &mut x, limits, cycle, &mut told),
         };
-        if iterated.residual.is_nan() || iterated.residual > MAX_RESIDUAL {
+        if iterated.residual.is_nan() || iterated.residual > MAX_RESIDUAL.max(10.0 * limits.target) {
             return None;
         }
         iteration.iterations = iteration.iterations.max(iterated.iterations);
@@ -151,9 +156,9 @@ mod tests {
             let (system, xy) = differences(60, wind);
             let other: Vec<f64> = (0..system.n()).map(|i| f64::from(i as u32 % 7) - 3.0).collect();
             let right_sides = [system.rhs.clone(), other, vec![0.0; system.n()]];
-            let direct = solve(&system, &xy, &right_sides, Solver::Auto, &mut |_| {})?;
+            let direct = solve(&system, &xy, &right_sides, Solver::Auto, TARGET, &mut |_| {})?;
             assert_eq!((direct.how.method, direct.how.iteration), (Method::Direct, None));
-            let iterated = solve(&system, &xy, &right_sides, Solver::Iterative, &mut |_| {})?;
+            let iterated = solve(&system, &xy, &right_sides, Solver::Iterative, TARGET, &mut |_| {})?;
             assert_eq!((iterated.how.method, iterated.how.fell_back), (method, false));
             let iteration = iterated.how.iteration.unwrap_or_default();
             // 12 and 11 measured, three levels, 1.5.
@@ -198,7 +203,10 @@ mod tests {
         }
         let xy: Vec<Point> = (0..n).map(|i| [f64::from(i), 0.0]).collect();
         for choice in Solver::ALL {
-            assert!(solve(&system, &xy, std::slice::from_ref(&system.rhs), choice, &mut |_| {}).is_err(), "{choice:?}");
+            assert!(
+                solve(&system, &xy, std::slice::from_ref(&system.rhs), choice, TARGET, &mut |_| {}).is_err(),
+                "{choice:?}"
+            );
         }
     }
 
@@ -221,10 +229,10 @@ mod tests {
             }
             system.push(&Equation { row, rhs: sound.rhs[k] });
         }
-        let iterated = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, &mut |_| {})?;
+        let iterated = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, TARGET, &mut |_| {})?;
         let iterations = iterated.how.iteration.unwrap_or_default().iterations;
         assert!((1..40).contains(&iterations), "{iterations}");
-        let direct = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Direct, &mut |_| {})?;
+        let direct = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Direct, TARGET, &mut |_| {})?;
         assert!(largest_difference(&iterated.x[0], &direct.x[0]) < 1e-9); // residual 1e-10
         Ok(())
     }
@@ -236,8 +244,9 @@ mod tests {
         let (system, xy) = differences(200, 0.3);
         let solve = |threads: usize| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-            let mut solutions =
-                pool.install(|| solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Auto, &mut |_| {}))?;
+            let mut solutions = pool.install(|| {
+                solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Auto, TARGET, &mut |_| {})
+            })?;
             assert_eq!(solutions.how.method, Method::Bicgstab);
             Ok(solutions.x.swap_remove(0))
         };

@@ -20,6 +20,9 @@ use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::Mesh;
 
+/// The relative residual of the linear system that is good enough: any w gives a bound, and what is left enters it squared.
+const TARGET: f64 = 1.0e-7;
+
 /// The warping function of a section, made a field of stress.
 pub(crate) struct Warping {
     field: NodalPolynomials,
@@ -61,7 +64,7 @@ impl Warping {
         fluxes.slivers.sort_by_key(|sample| sample.triangle);
         let mut conditions = vec![NodeCondition::Flux; mesh.cloud().n_boundary()];
         conditions[0] = NodeCondition::Value(0.0);
-        let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes };
+        let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes, target: TARGET };
         let params = SolveParams {
             formulation: Formulation::Variational,
             order: params.order_used().max(2),
