@@ -158,7 +158,7 @@ pub struct SolveArgs {
     pub keys: SolveKeys,
     #[command(flatten)]
     pub mesh: MeshKeys,
-    /// Do not estimate the errors of torsion, which takes about as long as the solution
+    /// Do not estimate the errors of torsion, which takes half as long as the solution or more
     #[arg(long)]
     pub no_estimate: bool,
     /// Refine the clouds until the estimated error of J is at most this fraction of it; without, clouds are as given

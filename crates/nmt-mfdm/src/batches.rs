@@ -9,7 +9,7 @@ use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::gauss::Rule;
-use crate::mend::{ROUNDS, soft_nodes, touched};
+use crate::mend::{ROUNDS, nodes_around, soft_nodes, touched};
 use crate::parallel::map_pieces;
 use crate::problem::Formulation;
 use crate::repair::StarOutcome;
@@ -124,12 +124,8 @@ struct Making<'a> {
 impl Making<'_> {
     /// The equations of unknowns, ascending, each with the polynomials of the nodes around.
     fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<Equation>, MfdmError> {
-        let Frame { mesh, node_tris, roles, .. } = self.frame;
-        let triangles = unknowns.iter().flat_map(|&k| node_tris.around(roles.node(k)));
-        let mut nodes: Vec<NodeId> = triangles.flat_map(|t| mesh.tri_nodes()[t.index()]).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let stencils = self.stencils(nodes)?;
+        let mesh = self.frame.mesh;
+        let stencils = self.stencils(nodes_around(self.frame, unknowns))?;
         let setting: Setting = self.frame.with(&stencils);
         let weak = WeakForm::blended(mesh, &stencils, self.frame.fluxes, self.rule);
         let pieces = map_pieces(0..unknowns.len(), PIECE, |piece| {
@@ -193,7 +189,7 @@ mod tests {
             let mut stencils = Stencils::new(around.0, around.1, stars, 0..n_nodes);
             let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
             let mut system = variational::assemble(&frame.with(&stencils), &weak).expect("a system");
-            let larger = mend(frame, around, &rule, &mut stencils, &mut system).expect("a system");
+            let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..roles.n_unknowns).expect("a system");
             assert!(order > 2 || !larger.is_empty(), "some star of order 2 is mended");
             let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
             let holes = hole_equations(&mesh, &weak, &node_tris, &roles, Formulation::Variational);

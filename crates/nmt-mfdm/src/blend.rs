@@ -19,6 +19,7 @@ use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::{Mesh, barycentric};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Value and derivatives of a field at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,7 +38,7 @@ pub struct NodalPolynomials {
     order: usize,
     blended_order: usize,   // of what is blended: 0 where the field is the linear interpolant
     coefficients: Vec<f64>, // Taylor coefficients in scaled coordinates, shape (n_nodes, n_monomials)
-    radii: Vec<f64>,        // in stretched coordinates, user's length unit
+    radii: Arc<[f64]>,      // in stretched coordinates, user's length unit
     metric: Metric,
     report: StarReport,
 }
@@ -55,19 +56,19 @@ impl NodalPolynomials {
         params: StarParams,
         values: &[f64],
     ) -> Result<Self, MfdmError> {
-        Self::fit_observed(surroundings, nearest, params, values, &mut |_| {})
+        let [field] = Self::fit_fields((surroundings, nearest), params, [values], &mut |_| {})?;
+        Ok(field)
     }
 
-    /// [`Self::fit`], telling how many nodes are done.
-    pub(crate) fn fit_observed(
-        surroundings: &Surroundings,
-        nearest: &Nearest,
+    /// [`Self::fit`] of several fields on the same stars, telling how many nodes are done.
+    pub(crate) fn fit_fields<const N: usize>(
+        (surroundings, nearest): (&Surroundings, &Nearest),
         params: StarParams,
-        values: &[f64],
+        fields: [&[f64]; N],
         observer: &mut dyn FnMut(Event),
-    ) -> Result<Self, MfdmError> {
-        struct Part {
-            coefficients: Vec<f64>,
+    ) -> Result<[Self; N], MfdmError> {
+        struct Part<const N: usize> {
+            coefficients: [Vec<f64>; N],
             radii: Vec<f64>,
             report: StarReport,
             poor: Option<MfdmError>,
@@ -86,7 +87,7 @@ impl NodalPolynomials {
         let part = |piece: Range<usize>| {
             let mut stars = SoundStars::new(surroundings, nearest, choice);
             let mut part = Part {
-                coefficients: Vec::with_capacity(n * piece.len()),
+                coefficients: [(); N].map(|()| Vec::with_capacity(n * piece.len())),
                 radii: Vec::with_capacity(piece.len()),
                 report: StarReport::default(),
                 poor: None,
@@ -94,37 +95,42 @@ impl NodalPolynomials {
             stars.each(
                 piece.map(NodeId::of),
                 |_| demand,
-                Wanted::Polynomial(values),
+                Wanted::Polynomials(&fields),
                 |star| {
                     let SoundStar { node, nodes, radius, outcome, values } = star;
                     if outcome.order == 0 && part.poor.is_none() {
                         let at = surroundings.xy()[node.index()];
                         part.poor = Some(MfdmError::PoorStar { node: node.index(), at, order: 1, tried: nodes.len() });
                     }
-                    part.coefficients.extend(values);
+                    let of_fields = values.chunks_exact(n).zip(&mut part.coefficients);
+                    of_fields.for_each(|(own, coefficients)| coefficients.extend(own));
                     part.radii.push(radius);
                     part.report.add(&outcome, params.order);
                 },
             );
             part
         };
-        let mut all = Self {
+        let mut coefficients = [(); N].map(|()| Vec::with_capacity(n * n_nodes));
+        let mut radii = Vec::with_capacity(n_nodes);
+        let mut report = StarReport { size: params.size, choice: params.choice, ..StarReport::default() };
+        let mut poor = None;
+        take_pieces(0..n_nodes, CHUNK, part, |part: Part<N>| {
+            poor = poor.take().or(part.poor);
+            coefficients.iter_mut().zip(part.coefficients).for_each(|(all, own)| all.extend(own));
+            radii.extend(part.radii);
+            report.join(&part.report);
+            observer(Event::Nodes { done: radii.len(), of: n_nodes });
+        });
+        let radii: Arc<[f64]> = radii.into();
+        let field = |coefficients| Self {
             order: params.order,
             blended_order: params.order,
-            coefficients: Vec::with_capacity(n * n_nodes),
-            radii: Vec::with_capacity(n_nodes),
+            coefficients,
+            radii: Arc::clone(&radii),
             metric: surroundings.metric(),
-            report: StarReport { size: params.size, choice: params.choice, ..StarReport::default() },
+            report,
         };
-        let mut poor = None;
-        take_pieces(0..n_nodes, CHUNK, part, |part: Part| {
-            poor = poor.take().or(part.poor);
-            all.coefficients.extend(part.coefficients);
-            all.radii.extend(part.radii);
-            all.report.join(&part.report);
-            observer(Event::Nodes { done: all.radii.len(), of: n_nodes });
-        });
-        poor.map_or(Ok(all), Err)
+        poor.map_or_else(|| Ok(coefficients.map(field)), Err)
     }
 
     /// The linear interpolant of `values`: on each triangle the plane through its three nodes. At a node its gradient is
@@ -150,7 +156,14 @@ impl NodalPolynomials {
             }
         }
         let report = StarReport::default();
-        Self { order: 1, blended_order: 0, coefficients, radii: vec![1.0; n_nodes], metric: Metric::plain(), report }
+        Self {
+            order: 1,
+            blended_order: 0,
+            coefficients,
+            radii: vec![1.0; n_nodes].into(),
+            metric: Metric::plain(),
+            report,
+        }
     }
 
     /// Order of the polynomials at the nodes.

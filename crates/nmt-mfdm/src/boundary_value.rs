@@ -10,6 +10,7 @@ use crate::flux::Fluxes;
 use crate::gauss::Rule;
 use crate::mend::mend;
 use crate::one_star::NodeStar;
+use crate::operator::Operator;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
@@ -17,7 +18,7 @@ use crate::solve::{Event, Stage};
 use crate::solver::{self, LinearSolve, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
-use crate::steady::steady;
+use crate::steady::{Hold, steady};
 use crate::stencils::{Kept, StarParams, StarReport, Stencils};
 use crate::surroundings::Surroundings;
 use crate::system::{Dirichlet, Equation, LinearSystem, NodeCondition, Role, Roles};
@@ -42,17 +43,33 @@ pub(crate) struct Discrete<'a> {
     pub target: f64,
 }
 
-/// What came of it.
-pub(crate) struct Solved {
+/// What came of it at the nodes.
+pub(crate) struct NodalSolution {
     /// u at the nodes.
     pub values: Vec<f64>,
     /// Of each hole with a circulation.
     pub constants: Vec<f64>,
-    pub field: NodalPolynomials,
     pub linear: LinearSolve,
     pub unknowns: usize,
     pub stars: StarReport,
     pub used_stars: UsedStars,
+}
+
+/// A mesh with what surrounds its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Around<'a> {
+    pub mesh: &'a Mesh,
+    pub surroundings: &'a Surroundings<'a>,
+    pub nearest: &'a Nearest<'a>,
+    pub node_tris: &'a NodeTris,
+}
+
+/// What `work` makes of a mesh with what surrounds its nodes.
+pub(crate) fn with_surroundings<T>(mesh: &Mesh, work: impl FnOnce(Around) -> T) -> T {
+    let surroundings = Surroundings::new(mesh.cloud());
+    let nearest = surroundings.nearest();
+    let node_tris = NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes());
+    work(Around { mesh, surroundings: &surroundings, nearest: &nearest, node_tris: &node_tris })
 }
 
 /// Solves a problem and recovers the field.
@@ -63,59 +80,76 @@ pub(crate) fn solve_discrete(
     discrete: Discrete,
     params: &SolveParams,
     observer: &mut dyn FnMut(Event),
-) -> Result<Solved, MfdmError> {
+) -> Result<(NodalSolution, NodalPolynomials), MfdmError> {
+    with_surroundings(discrete.mesh, |around| {
+        let (nodal, operator) = nodal_solution(discrete, params, around, None, observer)?;
+        drop(operator);
+        let [field] = recover(around, params, [&nodal.values], observer)?;
+        Ok((nodal, field))
+    })
+}
+
+/// Solves a problem for the values at the nodes, its equations made anew, or from the operator of another problem with
+/// these parameters on this mesh; hands over its own, of interpolating polynomials tested by hats with all values on the
+/// boundary given.
+///
+/// # Errors
+/// As [`solve_discrete`].
+pub(crate) fn nodal_solution(
+    discrete: Discrete,
+    params: &SolveParams,
+    around: Around,
+    from: Option<Operator>,
+    observer: &mut dyn FnMut(Event),
+) -> Result<(NodalSolution, Option<Operator>), MfdmError> {
     params.check()?;
     let Discrete { mesh, conditions, source, fluxes, target } = discrete;
-    let surroundings = Surroundings::new(mesh.cloud());
-    let metric = surroundings.metric();
-    let nearest = surroundings.nearest();
-    let n_nodes = mesh.cloud().n_nodes();
     let roles = roles(conditions, mesh, params);
-
-    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
-    let stencils = if is_batched(params) {
-        None // stars are found along with the equations
-    } else {
-        Some(stencils_of_equations(around, &roles, fluxes, params, kept(params), observer)?)
-    };
-    observer(Event::Ended(Stage::Stencils));
-
-    let node_tris = NodeTris::new(n_nodes, mesh.tri_nodes());
     let (rule, source_rule) = (params.rule()?, source_rule(params));
-    let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let assembled = match stencils {
-        Some(stencils) => assemble_at_once(frame, around, params, &rule, stencils)?,
-        None => {
-            let stars = params.star_params(mesh.cloud(), &metric)?;
-            let Batched { mut system, equations, stars, used_stars } =
-                batches::assemble(frame, (&surroundings, &nearest), stars, &rule, observer)?;
-            steady(frame, (&surroundings, &nearest), params.order, &mut system);
-            Assembled { system, equations, stars, used_stars, smoothing: None }
+    let frame = Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+    let Assembled { system, equations, stars, used_stars, smoothing, holds } = match from {
+        Some(operator) => {
+            let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
+            Assembled::of(operator.equations(frame, (around.surroundings, around.nearest), stars, &rule)?)
         }
+        None if is_batched(params) => assemble_in_batches(frame, around, params, &rule, observer)?,
+        None => assemble_at_once(frame, around, params, &rule, observer)?,
     };
-    let Assembled { system, equations, stars, used_stars, smoothing: stencils } = assembled;
     observer(Event::Ended(Stage::Assemble));
 
     let Nodal { values, constants, linear } =
         solve_system(&system, mesh.xy(), &equations, &roles, (params.solver, target), observer)?;
-    drop(system);
-    let values = match stencils {
+    let is_whole = is_mended(params) && roles.n_unknowns == mesh.cloud().n_interior();
+    let LinearSystem { matrix, is_beside, .. } = system;
+    let operator = is_whole.then(|| Operator { matrix, is_beside, holds, larger: used_stars.larger().clone() });
+    let values = match smoothing {
         Some(stencils) => smoothed(&stencils, mesh.xy(), values),
         None => values,
     };
     observer(Event::Ended(Stage::Solve));
+    let unknowns = roles.n_unknowns + roles.n_holes;
+    Ok((NodalSolution { values, constants, linear, unknowns, stars, used_stars }, operator))
+}
 
-    let field = if params.formulation == Formulation::Fem {
-        NodalPolynomials::linear(mesh, &values)
-    } else {
-        let order = params.recovery_order();
-        let recovery = StarParams {
-            choice: params.stars.unwrap_or_default(),
-            ..StarParams::nearest(order, metric.star_size(default_star(order)))
-        };
-        NodalPolynomials::fit_observed(&surroundings, &nearest, recovery, &values, observer)?
+/// The fields through values at the nodes, of one order more than the equations with `params` \[D14\].
+///
+/// # Errors
+/// [`MfdmError::PoorStar`] where a node sees too few others for a plane.
+pub(crate) fn recover<const N: usize>(
+    around: Around,
+    params: &SolveParams,
+    values: [&[f64]; N],
+    observer: &mut dyn FnMut(Event),
+) -> Result<[NodalPolynomials; N], MfdmError> {
+    if params.formulation == Formulation::Fem {
+        return Ok(values.map(|values| NodalPolynomials::linear(around.mesh, values)));
+    }
+    let order = params.recovery_order();
+    let recovery = StarParams {
+        choice: params.stars.unwrap_or_default(),
+        ..StarParams::nearest(order, around.surroundings.metric().star_size(default_star(order)))
     };
-    Ok(Solved { values, constants, field, linear, unknowns: roles.n_unknowns + roles.n_holes, stars, used_stars })
+    NodalPolynomials::fit_fields((around.surroundings, around.nearest), recovery, values, observer)
 }
 
 /// What the linear solver and the results take.
@@ -127,6 +161,33 @@ struct Assembled {
     used_stars: UsedStars,
     /// Of polynomials that smooth: they make the nodal values from the solution.
     smoothing: Option<Stencils>,
+    /// What holds loose nodes.
+    holds: Vec<Hold>,
+}
+
+impl Assembled {
+    /// A system whose stars nobody reports.
+    fn of(system: LinearSystem) -> Self {
+        let (stars, used_stars) = (StarReport::default(), UsedStars::default());
+        Self { system, equations: Vec::new(), stars, used_stars, smoothing: None, holds: Vec::new() }
+    }
+}
+
+/// All equations from stars that are made and dropped batch by batch.
+fn assemble_in_batches(
+    frame: Frame,
+    around: Around,
+    params: &SolveParams,
+    rule: &Rule,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Assembled, MfdmError> {
+    let stars = params.star_params(frame.mesh.cloud(), &around.surroundings.metric())?;
+    let places = (around.surroundings, around.nearest);
+    // Stars are found along with the equations.
+    observer(Event::Ended(Stage::Stencils));
+    let Batched { mut system, equations, stars, used_stars } = batches::assemble(frame, places, stars, rule, observer)?;
+    let holds = steady(frame, places, params.order, &mut system);
+    Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
 }
 
 /// All equations from all stencils.
@@ -135,12 +196,17 @@ fn assemble_at_once(
     around: Around,
     params: &SolveParams,
     rule: &Rule,
-    mut stencils: Stencils,
+    observer: &mut dyn FnMut(Event),
 ) -> Result<Assembled, MfdmError> {
     let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
     let Around { surroundings, nearest, .. } = around;
+    let mut stencils = stencils_of_equations(around, roles, fluxes, params, kept(params), observer)?;
+    observer(Event::Ended(Stage::Stencils));
     let mended = mended_system(frame, around, params, rule, &mut stencils)?;
-    let (mended, larger) = mended.map_or_else(Default::default, |Mended { system, larger }| (Some(system), larger));
+    let (mended, larger, holds) = match mended {
+        Some(Mended { system, larger, holds }) => (Some(system), larger, holds),
+        None => Default::default(),
+    };
     let (stars, used_stars) = (stencils.report(), stencils.used(larger));
     let setting = frame.with(&stencils);
     let space = TrialSpace {
@@ -179,7 +245,7 @@ fn assemble_at_once(
     drop(weak);
     // Rows are the larger part of what is held; only smoothing needs them again.
     let stencils = (!interpolates(params)).then_some(stencils);
-    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils })
+    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -200,24 +266,15 @@ pub(crate) fn star_of_equations(
     if !is_mended(params) && fluxes.of_node(node).is_none() {
         return NodeStar::of(mesh.cloud(), params, node);
     }
-    let surroundings = Surroundings::new(mesh.cloud());
-    let nearest = surroundings.nearest();
-    let around = Around { mesh, surroundings: &surroundings, nearest: &nearest };
-    let roles = roles(conditions, mesh, params);
-    let mut stencils = stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?;
-    let (rule, source_rule) = (params.rule()?, source_rule(params));
-    let node_tris = NodeTris::new(mesh.cloud().n_nodes(), mesh.tri_nodes());
-    let frame = Frame { mesh, node_tris: &node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    mended_system(frame, around, params, &rule, &mut stencils)?;
-    Ok(Some(NodeStar::in_stencils(mesh.cloud(), &surroundings, &stencils, node)))
-}
-
-/// A mesh with what surrounds its nodes.
-#[derive(Clone, Copy)]
-struct Around<'a> {
-    mesh: &'a Mesh,
-    surroundings: &'a Surroundings<'a>,
-    nearest: &'a Nearest<'a>,
+    with_surroundings(mesh, |around| {
+        let roles = roles(conditions, mesh, params);
+        let mut stencils = stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?;
+        let (rule, source_rule) = (params.rule()?, source_rule(params));
+        let frame =
+            Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+        mended_system(frame, around, params, &rule, &mut stencils)?;
+        Ok(Some(NodeStar::in_stencils(mesh.cloud(), around.surroundings, &stencils, node)))
+    })
 }
 
 /// Whether polynomials meet their nodes' values exactly.
@@ -262,7 +319,7 @@ fn stencils_of_equations(
     kept: Kept,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Stencils, MfdmError> {
-    let Around { mesh, surroundings, nearest } = around;
+    let Around { mesh, surroundings, nearest, .. } = around;
     let (n_nodes, n_boundary) = (mesh.cloud().n_nodes(), mesh.cloud().n_boundary());
     if params.formulation == Formulation::Fem {
         return Ok(Stencils::constants(n_nodes));
@@ -291,6 +348,7 @@ struct Mended {
     system: LinearSystem,
     /// Nodes in the stars that were enlarged.
     larger: BTreeMap<NodeId, usize>,
+    holds: Vec<Hold>,
 }
 
 /// The system of hats on blends, with the stars of soft nodes mended; `None` for all other equations.
@@ -308,9 +366,10 @@ fn mended_system(
     let mut system = variational::assemble(&frame.with(stencils), &weak)?;
     drop(weak);
     let around = (around.surroundings, around.nearest);
-    let larger = mend(frame, around, rule, stencils, &mut system)?;
-    steady(frame, around, params.order, &mut system);
-    Ok(Some(Mended { system, larger }))
+    let unknowns = 0..system.n();
+    let larger = mend(frame, around, rule, stencils, &mut system, unknowns)?;
+    let holds = steady(frame, around, params.order, &mut system);
+    Ok(Some(Mended { system, larger, holds }))
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.

@@ -53,6 +53,11 @@ impl UsedStars {
         Self { params: Some(params), first, larger, known }
     }
 
+    /// Nodes asked for, of stars that were enlarged for the equations' sake.
+    pub(crate) fn larger(&self) -> &BTreeMap<NodeId, usize> {
+        &self.larger
+    }
+
     /// What is known of every star, shape (n_nodes,), with the `mesh` of the solution; empty for finite elements.
     ///
     /// The stars are found again, in the time that they took: a solution of 10⁶ nodes would keep 50 MB for few readers.

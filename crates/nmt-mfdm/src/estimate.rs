@@ -6,16 +6,17 @@
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.
 
+use crate::boundary_value::{recover, with_surroundings};
 use crate::error::MfdmError;
 use crate::gauss::{Rule, six_points};
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
-use crate::problem::{HoleCondition, Load, TorsionProblem};
+use crate::problem::{Load, TorsionProblem};
 use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::true_edges::{ALONG, Piece, Sample, visit_pieces};
-use crate::warping::Warping;
+use crate::warping::{NodalWarping, Warping, warping_params};
 use nmt_cloud::Section;
 use nmt_geom::point::{dot, sub};
 use nmt_geom::{LoopId, NodeId, Point, TriId};
@@ -50,9 +51,9 @@ impl ErrorEstimate {
 }
 
 /// Estimates the errors of `solution`, which is that of `problem` on `mesh` with `params`; `section` is what the mesh's
-/// cloud was generated from. It costs about as much as the solution.
+/// cloud was generated from. It costs about as much as the solution; [`crate::solve_estimated`] takes half of that.
 ///
-/// `None` where a hole has F = 0 ([`HoleCondition::Zero`]): then 2∫F is no torsion constant that anything bounds.
+/// `None` where a hole has F = 0 ([`crate::HoleCondition::Zero`]): then 2∫F is no torsion constant that anything bounds.
 ///
 /// # Errors
 /// As [`crate::solve`]; [`MfdmError::Curve`] where an edge has no length.
@@ -97,11 +98,30 @@ pub fn estimate_observed(
     solution: &TorsionSolution,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Option<ErrorEstimate>, MfdmError> {
-    if solution.holes.iter().any(|hole| hole.condition == HoleCondition::Zero) {
+    if !problem.has_torsion_constant(mesh.cloud().boundary().n_loops() - 1) {
         return Ok(None);
     }
-    let warping = Warping::solve(mesh, section, params, observer)?;
-    let both = Both { mesh, solution, warping: &warping };
+    let params = warping_params(params);
+    let warping = with_surroundings(mesh, |around| {
+        let nodal = NodalWarping::solve(around, section, &params, None, observer)?;
+        let [field] = recover(around, &params, [&nodal.values], observer)?;
+        Ok(nodal.with_field(field))
+    })?;
+    bounds(problem, mesh, section, solution, &warping).map(Some)
+}
+
+/// What the stress function and the warping function say of each other.
+///
+/// # Errors
+/// [`MfdmError::Curve`] where an edge has no length, [`MfdmError::Singular`] where a number is none.
+pub(crate) fn bounds(
+    problem: &TorsionProblem,
+    mesh: &Mesh,
+    section: &Section,
+    solution: &TorsionSolution,
+    warping: &Warping,
+) -> Result<ErrorEstimate, MfdmError> {
+    let both = Both { mesh, solution, warping };
     let beyond = Beyond::new(&both, section)?;
     let parts = both.over_triangles();
     let mut indicators: Vec<f64> = parts.iter().map(|own| own.square).collect();
@@ -129,7 +149,7 @@ pub fn estimate_observed(
     if numbers.iter().any(|number| !number.is_finite()) {
         return Err(MfdmError::Singular { n: mesh.cloud().n_nodes() });
     }
-    Ok(Some(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear: warping.linear }))
+    Ok(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear: warping.linear })
 }
 
 /// Integrals over a triangle.

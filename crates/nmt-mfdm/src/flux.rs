@@ -68,6 +68,9 @@ pub(crate) struct Fluxes {
 }
 
 impl Fluxes {
+    /// No flux anywhere.
+    pub const NONE: Self = Self { edges: Vec::new(), slivers: Vec::new(), nodes: Vec::new() };
+
     /// Integrals over the edges that have a flux (`by_edge`, one an edge of the section), and the conditions at the nodes
     /// `free`, ascending, all of whose edges have one.
     ///

@@ -44,6 +44,7 @@ mod local;
 mod mend;
 mod mwls;
 mod one_star;
+mod operator;
 mod parallel;
 mod params;
 mod poisson;
@@ -85,7 +86,7 @@ pub use post::{Extreme, Extremes, Stress, StressIntegral, extremes, residuals, s
 pub use problem::{Formulation, HoleCondition, Load, Test, TorsionProblem, Trial};
 pub use repair::StarOutcome;
 pub use solution::{HoleResult, TorsionSolution};
-pub use solve::{Event, Stage, solve, solve_observed};
+pub use solve::{Estimate, Event, Stage, solve, solve_estimated, solve_observed};
 pub use solver::{DIRECT_MAX_UNKNOWNS, Iteration, LinearSolve, Method, Solver};
 pub use star::{StarChoice, StarFinder, default_star};
 pub use stencils::{StarParams, StarReport, Stencil, Stencils};

@@ -18,6 +18,7 @@ use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Least share of the linear elements' own coefficient.
 pub(crate) const SOFT: f64 = 0.5;
@@ -25,7 +26,7 @@ pub(crate) const SOFT: f64 = 0.5;
 /// Times that stars are enlarged, by half each time.
 pub(crate) const ROUNDS: usize = 3;
 
-/// Enlarges the stars of soft nodes, and makes the equations that their polynomials enter anew; tells how many nodes were
+/// Enlarges the stars of soft nodes among the unknowns told, and makes the equations that their polynomials enter anew; tells how many nodes were
 /// asked for at last for each star that was enlarged, by node.
 ///
 /// # Errors
@@ -36,9 +37,10 @@ pub(crate) fn mend(
     rule: &Rule,
     stencils: &mut Stencils,
     system: &mut LinearSystem,
+    among: Range<usize>,
 ) -> Result<BTreeMap<NodeId, usize>, MfdmError> {
     let mut sizes = BTreeMap::new();
-    let mut soft = soft_nodes(frame, system, 0..system.n());
+    let mut soft = soft_nodes(frame, system, among.clone());
     for _ in 0..ROUNDS {
         if soft.is_empty() {
             break;
@@ -52,7 +54,7 @@ pub(crate) fn mend(
         let touched = touched(frame, &soft);
         let anew = touched.iter().map(|&k| Ok((k, maker.of(k)?)));
         system.replace(&anew.collect::<Result<Vec<_>, MfdmError>>()?);
-        soft = soft_nodes(frame, system, touched.into_iter());
+        soft = soft_nodes(frame, system, touched.into_iter().filter(|k| among.contains(k)));
     }
     Ok(sizes)
 }
@@ -62,6 +64,15 @@ pub(crate) fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: impl Ite
     let is_soft =
         |k: &usize| system.matrix.diagonal(*k) < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(*k));
     unknowns.filter(is_soft).map(|k| frame.roles.node(k)).collect()
+}
+
+/// Nodes, ascending, whose polynomials enter the equations of `unknowns`: their own and those of the nodes around.
+pub(crate) fn nodes_around(frame: Frame, unknowns: &[usize]) -> Vec<NodeId> {
+    let triangles = unknowns.iter().flat_map(|&k| frame.node_tris.around(frame.roles.node(k)));
+    let mut nodes: Vec<NodeId> = triangles.flat_map(|t| frame.mesh.tri_nodes()[t.index()]).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.

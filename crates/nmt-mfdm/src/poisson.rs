@@ -105,14 +105,14 @@ pub fn solve_poisson_observed(
     params: &SolveParams,
     observer: &mut dyn FnMut(Event),
 ) -> Result<PoissonSolution, MfdmError> {
-    let solved = problem.with_discrete(mesh, |discrete| solve_discrete(discrete, params, observer))?;
+    let (solved, field) = problem.with_discrete(mesh, |discrete| solve_discrete(discrete, params, observer))?;
     observer(Event::Ended(Stage::Post));
     if solved.values.iter().any(|u| !u.is_finite()) {
         return Err(MfdmError::Singular { n: solved.unknowns });
     }
     Ok(PoissonSolution {
         u: solved.values,
-        field: solved.field,
+        field,
         unknowns: solved.unknowns,
         linear: solved.linear,
         stars: solved.stars,

@@ -143,6 +143,12 @@ impl TorsionProblem {
         Ok(())
     }
 
+    /// Whether 2∫F + 2Σc_kA_k is the torsion constant of a section of so many holes: not where F = 0 on them
+    /// ([`HoleCondition::Zero`]), and nothing bounds it then.
+    pub fn has_torsion_constant(&self, n_holes: usize) -> bool {
+        n_holes == 0 || self.holes == HoleCondition::Circulation
+    }
+
     /// θ for a section of torsion constant `j`.
     pub(crate) fn twist(&self, j: f64) -> f64 {
         match self.load {

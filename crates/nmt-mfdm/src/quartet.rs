@@ -60,7 +60,7 @@ impl Quartet {
     }
 
     /// Number of the unknowns: all monomials but the constant.
-    pub fn n_columns(&self) -> usize {
+    fn n_columns(&self) -> usize {
         n_monomials(self.order) - 1
     }
 
@@ -293,9 +293,9 @@ impl Quartet {
         }
     }
 
-    /// The derivatives but the value of the polynomial fitted in a lane, in scaled coordinates, into `out`.
-    pub fn fitted(&self, lane: usize, out: &mut [f64]) {
-        out.iter_mut().zip(&self.own).for_each(|(out, own)| *out = own.0[lane]);
+    /// Appends the derivatives but the value of the polynomial fitted in a lane, in scaled coordinates.
+    pub fn fitted(&self, lane: usize, out: &mut Vec<f64>) {
+        out.extend(self.own[..self.n_columns()].iter().map(|own| own.0[lane]));
     }
 }
 
@@ -445,8 +445,9 @@ mod tests {
                         prop_assert!((laplacians[lane][k] - expected).abs() <= 5.0 * tolerance);
                     }
                 }
-                let mut found = vec![0.0; fit.len() - 1];
+                let mut found = Vec::new();
                 quartet.fitted(lane, &mut found);
+                prop_assert_eq!(found.len(), fit.len() - 1);
                 for (found, expected) in found.iter().zip(&fit[1..]) {
                     prop_assert!((found - expected).abs() <= n as f64 * tolerance, "{} {}", found, expected);
                 }

@@ -1,8 +1,10 @@
 //! The torsion problem from mesh to results: the discrete problem for Gθ = 1, scaled.
 
-use crate::boundary_value::{Discrete, Solved, solve_discrete};
+use crate::blend::NodalPolynomials;
+use crate::boundary_value::{Discrete, NodalSolution, nodal_solution, recover, solve_discrete, with_surroundings};
 use crate::circulation::hole_area;
 use crate::error::MfdmError;
+use crate::estimate::{ErrorEstimate, bounds};
 use crate::flux::Fluxes;
 use crate::params::SolveParams;
 use crate::post::{extremes, torque};
@@ -11,9 +13,11 @@ use crate::solution::{HoleResult, TorsionSolution};
 use crate::solver::TARGET;
 use crate::source::Source;
 use crate::system::Roles;
+use crate::warping::{NodalWarping, warping_params};
+use nmt_cloud::Section;
 use nmt_tri::Mesh;
 
-/// The stages that [`solve_observed`] tells the end of, in order.
+/// The stages that [`solve_observed`] and [`solve_estimated`] tell the end of, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Stars and rows.
@@ -24,6 +28,9 @@ pub enum Stage {
     Solve,
     /// Recovery and results.
     Post,
+    /// How far the results may be off: [`solve_estimated`] finds the warping function before [`Self::Post`], and the
+    /// bounds after it.
+    Estimate,
 }
 
 /// What [`solve_observed`] tells while it works.
@@ -84,34 +91,103 @@ pub fn solve_observed(
     observer: &mut dyn FnMut(Event),
 ) -> Result<TorsionSolution, MfdmError> {
     problem.check()?;
-    let discrete = Discrete {
+    let (nodal, field) = solve_discrete(discrete(problem, mesh), params, observer)?;
+    let solution = results(problem, mesh, nodal, field);
+    observer(Event::Ended(Stage::Post));
+    solution
+}
+
+/// [`solve_observed`] with the estimate of its errors ([`crate::estimate`]), which takes over stars and equations and so costs half
+/// of what it costs by itself. That there is no estimate is no fault of the solution. `section` is what the mesh's cloud was
+/// generated from.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_estimated(
+    problem: &TorsionProblem,
+    mesh: &Mesh,
+    section: &Section,
+    params: &SolveParams,
+    observer: &mut dyn FnMut(Event),
+) -> Result<(TorsionSolution, Estimate), MfdmError> {
+    problem.check()?;
+    if !problem.has_torsion_constant(mesh.cloud().boundary().n_loops() - 1) {
+        return Ok((solve_observed(problem, mesh, params, observer)?, Ok(None)));
+    }
+    let of_warping = warping_params(params);
+    let is_same = of_warping == *params;
+    let (nodal, fields) = with_surroundings(mesh, |around| {
+        let (nodal, operator) = nodal_solution(discrete(problem, mesh), params, around, None, observer)?;
+        let operator = operator.filter(|_| is_same);
+        let warping = NodalWarping::solve(around, section, &of_warping, operator, &mut within(observer));
+        observer(Event::Ended(Stage::Estimate));
+        let fields = match warping {
+            Ok(warping) if is_same => {
+                let values = [&nodal.values[..], &warping.values];
+                recover(around, params, values, observer).map(|[field, w]| (field, Ok(warping.with_field(w))))
+            }
+            warping => recover(around, params, [&nodal.values], observer).map(|[field]| {
+                let recovered = warping.and_then(|warping| {
+                    let [w] = recover(around, &of_warping, [&warping.values], observer)?;
+                    Ok(warping.with_field(w))
+                });
+                (field, recovered)
+            }),
+        };
+        fields.map(|fields| (nodal, fields))
+    })?;
+    let (field, warping) = fields;
+    let solution = results(problem, mesh, nodal, field)?;
+    observer(Event::Ended(Stage::Post));
+    let estimate = warping.and_then(|warping| bounds(problem, mesh, section, &solution, &warping).map(Some));
+    observer(Event::Ended(Stage::Estimate));
+    Ok((solution, estimate))
+}
+
+/// What becomes of an estimate: `None` where a hole has F = 0, an error where the warping function cannot be found.
+pub type Estimate = Result<Option<ErrorEstimate>, MfdmError>;
+
+/// The Prandtl problem for Gθ = 1.
+fn discrete<'a>(problem: &TorsionProblem, mesh: &'a Mesh) -> Discrete<'a> {
+    static NONE: Fluxes = Fluxes::NONE;
+    Discrete {
         mesh,
         conditions: Roles::of_torsion(mesh, problem.holes),
         source: Source::Constant(2.0),
-        fluxes: &Fluxes::default(),
+        fluxes: &NONE,
         target: TARGET,
-    };
-    let solved = solve_discrete(discrete, params, observer)?;
-    let unknowns = solved.unknowns;
-    let solution = results(problem, mesh, solved);
-    observer(Event::Ended(Stage::Post));
-    // A number that is none is an error, not a result.
-    let numbers = [solution.j, solution.torque, solution.w_t, solution.f_max.value, solution.tau_max.value];
-    if numbers.iter().all(|v| v.is_finite()) { Ok(solution) } else { Err(MfdmError::Singular { n: unknowns }) }
+    }
+}
+
+/// How far a part of a stage is, without the ends of its own stages.
+fn within(observer: &mut dyn FnMut(Event)) -> impl FnMut(Event) {
+    |event| {
+        if !matches!(event, Event::Ended(_)) {
+            observer(event)
+        }
+    }
 }
 
 /// Scales the solution for Gθ = 1 by Gθ and takes the results from the recovered field.
-fn results(problem: &TorsionProblem, mesh: &Mesh, solved: Solved) -> TorsionSolution {
+///
+/// # Errors
+/// [`MfdmError::Singular`] where a number is none: that is no result.
+fn results(
+    problem: &TorsionProblem,
+    mesh: &Mesh,
+    solved: NodalSolution,
+    field: NodalPolynomials,
+) -> Result<TorsionSolution, MfdmError> {
     let n_holes = mesh.cloud().boundary().n_loops() - 1;
     let areas: Vec<f64> = (0..n_holes).map(|hole| hole_area(mesh, hole)).collect();
-    let j = torque(solved.field.volume(mesh), &solved.constants, &areas);
+    let j = torque(field.volume(mesh), &solved.constants, &areas);
     let twist = problem.twist(j);
     let g_theta = problem.shear_modulus * twist;
-    let field = solved.field.scaled(g_theta);
+    let field = field.scaled(g_theta);
     let extremes = extremes(mesh, &field);
     let constant = |hole: usize| solved.constants.get(hole).map_or(0.0, |c| c * g_theta);
     let holes = areas.iter().enumerate();
-    TorsionSolution {
+    let solution = TorsionSolution {
         f: solved.values.iter().map(|v| v * g_theta).collect(),
         holes: holes.map(|(k, &area)| HoleResult { condition: problem.holes, f: constant(k), area }).collect(),
         j,
@@ -127,5 +203,8 @@ fn results(problem: &TorsionProblem, mesh: &Mesh, solved: Solved) -> TorsionSolu
         recovery_stars: field.report(),
         used_stars: solved.used_stars,
         field,
-    }
+    };
+    let numbers = [solution.j, solution.torque, solution.w_t, solution.f_max.value, solution.tau_max.value];
+    let is_sound = numbers.iter().all(|v| v.is_finite());
+    if is_sound { Ok(solution) } else { Err(MfdmError::Singular { n: solution.unknowns }) }
 }

@@ -20,8 +20,8 @@ pub(crate) enum Wanted<'a> {
     Rows,
     /// The row of ∇² in stretched coordinates, times the square of the radius; of interpolating polynomials.
     Laplacian,
-    /// The coefficients of the interpolating polynomial through these values, one a node of the cloud.
-    Polynomial(&'a [f64]),
+    /// The coefficients of the interpolating polynomials through the values of each of these fields, one a node of the cloud.
+    Polynomials(&'a [&'a [f64]]),
 }
 
 /// A star and what was computed of it.
@@ -33,7 +33,8 @@ pub(crate) struct SoundStar<'a> {
     /// User's length unit; 1 where the star is its centre alone.
     pub radius: f64,
     pub outcome: StarOutcome,
-    /// Rows, one after another, or coefficients; those of derivatives that the polynomial does not have are 0.
+    /// Rows, one after another, or coefficients, field after field; those of derivatives that the polynomial does not have
+    /// are 0.
     pub values: &'a [f64],
 }
 
@@ -43,6 +44,7 @@ pub(crate) struct SoundStars<'a> {
     mwls: Mwls,
     quartet: Quartet,
     stars: [Vec<NodeId>; WIDTH],
+    fitted: [Vec<f64>; WIDTH], // coefficients of each star, field after field
     star: Vec<NodeId>,
     values: Vec<f64>,
 }
@@ -64,6 +66,7 @@ impl<'a> SoundStars<'a> {
             mwls: Mwls::default(),
             quartet: Quartet::default(),
             stars: Default::default(),
+            fitted: Default::default(),
             star: Vec::new(),
             values: Vec::new(),
         }
@@ -120,13 +123,15 @@ impl<'a> SoundStars<'a> {
                     values.truncate(star.len());
                 }
             }
-            Wanted::Polynomial(of) => {
-                let mut fitted = [0.0; MAX_MONOMIALS];
-                fitted[0] = of[node.index()];
-                if outcome.order > 0 {
-                    mwls.fit(|k| of[star[k].index()], &mut fitted);
+            Wanted::Polynomials(fields) => {
+                for of in fields {
+                    let mut fitted = [0.0; MAX_MONOMIALS];
+                    fitted[0] = of[node.index()];
+                    if outcome.order > 0 {
+                        mwls.fit(|k| of[star[k].index()], &mut fitted);
+                    }
+                    values.extend(&fitted[..n_monomials(demand.order)]);
                 }
-                values.extend(&fitted[..n_monomials(demand.order)]);
             }
         }
         let radius = if mwls.radius() > 0.0 { mwls.radius() } else { 1.0 };
@@ -162,7 +167,16 @@ impl<'a> SoundStars<'a> {
             Wanted::Laplacian => {
                 self.quartet.laplacian(surroundings.metric().stretch().map(|stretch| stretch * stretch))
             }
-            Wanted::Polynomial(values) => self.quartet.fit(values, stars),
+            Wanted::Polynomials(fields) => {
+                self.fitted.iter_mut().for_each(Vec::clear);
+                for values in fields {
+                    self.quartet.fit(values, stars);
+                    for ((lane, fitted), star) in self.fitted.iter_mut().enumerate().zip(stars) {
+                        fitted.push(values[star.nodes[star.centre].index()]);
+                        self.quartet.fitted(lane, fitted);
+                    }
+                }
+            }
         }
         true
     }
@@ -178,7 +192,7 @@ impl<'a> SoundStars<'a> {
             match wanted {
                 Wanted::Rows => own(XX - 1) * s_x * s_x + own(YY - 1) * s_y * s_y >= 0.0,
                 Wanted::Laplacian => own(0) >= 0.0,
-                Wanted::Polynomial(_) => true, // it has no rows to tell
+                Wanted::Polynomials(_) => true, // it has no rows to tell
             }
         };
         let outcome = StarOutcome { order: demand.order, enlarged: false, hidden, condition, wrong_sign };
@@ -190,11 +204,7 @@ impl<'a> SoundStars<'a> {
         let star = CentredStar { nodes: &self.stars[lane], centre };
         match wanted {
             Wanted::Rows | Wanted::Laplacian => self.quartet.copy_rows(lane, star, &mut self.values),
-            Wanted::Polynomial(of) => {
-                self.values.clear();
-                self.values.resize(self.quartet.n_columns() + 1, of[star.nodes[centre].index()]);
-                self.quartet.fitted(lane, &mut self.values[1..]);
-            }
+            Wanted::Polynomials(_) => self.values.clone_from(&self.fitted[lane]),
         }
     }
 }

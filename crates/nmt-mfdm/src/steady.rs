@@ -21,10 +21,11 @@ use crate::mend::SOFT;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
-use crate::system::{LinearSystem, Role};
+use crate::system::{LinearSystem, Role, Roles, SplitRow};
 use crate::variational::hat_energy;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
+use std::ops::Range;
 
 /// Least determinant of the equations of two nodes, over that of their hats' energies; linear elements have 3/4 and more.
 const LOOSE_PAIR: f64 = 0.25;
@@ -51,33 +52,60 @@ struct Loose {
     lacking: f64,
 }
 
-/// Adds the predictions of nodes that are hardly held.
-pub(crate) fn steady(frame: Frame, around: (&Surroundings, &Nearest), order: usize, system: &mut LinearSystem) {
-    let loose = loose_nodes(frame, system);
-    if loose.is_empty() {
-        return;
+/// A term ½·strength·(u_k − Q_k)² of the energy: a node that is held by what the nodes around predict.
+#[derive(Clone, Debug)]
+pub(crate) struct Hold {
+    strength: f64,
+    /// u_k − Q_k by node, ascending.
+    departure: Vec<(NodeId, f64)>,
+}
+
+impl Hold {
+    /// What it adds to the equations of its nodes, by the number of the unknown.
+    pub fn parts(&self, roles: &Roles) -> impl Iterator<Item = (usize, SplitRow)> {
+        let functional = roles.split(&self.departure);
+        self.departure.iter().filter_map(move |&(node, coefficient)| match roles.of(node) {
+            Role::Unknown(k) => Some((k as usize, functional.times(self.strength * coefficient))),
+            Role::Hole(_) | Role::Known(_) => None,
+        })
     }
+}
+
+/// Adds the predictions of nodes that are hardly held to their equations; tells them.
+pub(crate) fn steady(
+    frame: Frame,
+    around: (&Surroundings, &Nearest),
+    order: usize,
+    system: &mut LinearSystem,
+) -> Vec<Hold> {
+    let holds = holds(frame, around, order, system, 0..system.n());
+    system.join(holds.iter().flat_map(|hold| hold.parts(frame.roles)).collect());
+    holds
+}
+
+/// Predictions of the nodes that are hardly held, of the unknowns `among` and of the twins of these.
+pub(crate) fn holds(
+    frame: Frame,
+    around: (&Surroundings, &Nearest),
+    order: usize,
+    system: &LinearSystem,
+    among: Range<usize>,
+) -> Vec<Hold> {
     let mut predictor = Predictor::new(frame, around, order);
-    let mut parts = Vec::new();
-    for Loose { unknown, twin, energy, lacking } in loose {
+    let loose = loose_nodes(frame, system, among).into_iter();
+    let hold = |Loose { unknown, twin, energy, lacking }: Loose| {
         let strength = energy.min(REGULAR_ENERGY) + lacking;
-        let Some(departure) = predictor.departure(unknown, twin) else { continue };
-        let functional = frame.roles.split(&departure);
-        for (node, coefficient) in departure {
-            if let Role::Unknown(k) = frame.roles.of(node) {
-                parts.push((k as usize, functional.times(strength * coefficient)));
-            }
-        }
-    }
-    system.join(parts);
+        Some(Hold { strength, departure: predictor.departure(unknown, twin)? })
+    };
+    loose.filter_map(hold).collect()
 }
 
 /// The nodes that are hardly held, ascending.
-fn loose_nodes(frame: Frame, system: &LinearSystem) -> Vec<Loose> {
+fn loose_nodes(frame: Frame, system: &LinearSystem, among: Range<usize>) -> Vec<Loose> {
     let energy = |k: usize| hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k));
     let matrix = &system.matrix;
     let mut loose: Vec<Loose> = Vec::new();
-    for k in 0..system.n() {
+    for k in among {
         let (own, own_energy) = (matrix.diagonal(k), energy(k));
         if own < SOFT * own_energy {
             loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });

@@ -4,7 +4,7 @@
 use crate::error::MfdmError;
 use crate::parallel::{large_pieces, take_pieces};
 use crate::problem::HoleCondition;
-use crate::solver::csr::Csr;
+use crate::solver::csr::{Csr, Row};
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
 use std::ops::Range;
@@ -133,18 +133,22 @@ pub(crate) struct SplitRow {
     pub holes: Vec<(u32, f64)>,
     /// What the known values contribute.
     pub known: f64,
+    /// Whether a value that is known or a hole's enters it, be it 0.
+    pub is_beside: bool,
 }
 
 impl SplitRow {
     /// This functional times a factor.
     pub fn times(&self, factor: f64) -> Self {
         let scaled = |parts: &[(u32, f64)]| parts.iter().map(|&(k, c)| (k, c * factor)).collect();
-        Self { unknowns: scaled(&self.unknowns), holes: scaled(&self.holes), known: self.known * factor }
+        let (unknowns, holes) = (scaled(&self.unknowns), scaled(&self.holes));
+        Self { unknowns, holes, known: self.known * factor, is_beside: self.is_beside }
     }
 
     /// Adds `coefficient` times the value of a node of that role; unknowns must come in ascending order.
     #[inline]
     pub fn add(&mut self, role: Role, coefficient: f64) {
+        self.is_beside |= !matches!(role, Role::Unknown(_));
         match role {
             Role::Unknown(k) => self.unknowns.push((k, coefficient)),
             Role::Hole(k) => match self.holes.iter_mut().find(|(hole, _)| *hole == k) {
@@ -214,12 +218,19 @@ pub(crate) struct LinearSystem {
     pub rhs: Vec<f64>,
     /// (row, coefficient) of each B_k.
     pub hole_columns: Vec<Vec<(u32, f64)>>,
+    /// Whether a value on the boundary enters the equation, be it 0; shape (n,).
+    pub is_beside: Vec<bool>,
 }
 
 impl LinearSystem {
     /// No equation yet, in `n` unknowns.
     pub fn new(n: usize, n_holes: usize) -> Self {
-        Self { matrix: Csr::new(n), rhs: Vec::new(), hole_columns: vec![Vec::new(); n_holes] }
+        Self { matrix: Csr::new(n), rhs: Vec::new(), hole_columns: vec![Vec::new(); n_holes], is_beside: Vec::new() }
+    }
+
+    /// As [`Self::new`], with room for so many entries of A.
+    pub fn with_room(n: usize, n_holes: usize, n_entries: usize) -> Self {
+        Self { matrix: Csr::with_room(n, n, n_entries), ..Self::new(n, n_holes) }
     }
 
     /// Number of equations.
@@ -261,6 +272,7 @@ impl LinearSystem {
         let first = self.rhs.len() as u32;
         self.matrix.append(&piece.matrix);
         self.rhs.extend(piece.rhs);
+        self.is_beside.extend(piece.is_beside);
         for (all, own) in self.hole_columns.iter_mut().zip(piece.hole_columns) {
             all.extend(own.into_iter().map(|(row, coefficient)| (first + row, coefficient)));
         }
@@ -273,6 +285,7 @@ impl LinearSystem {
         self.matrix.replace_rows(&numbers, &rows);
         for (number, equation) in anew {
             self.rhs[*number] = equation.rhs - equation.row.known;
+            self.is_beside[*number] = equation.row.is_beside;
         }
         for (hole, column) in self.hole_columns.iter_mut().enumerate() {
             column.retain(|(number, _)| numbers.binary_search(&(*number as usize)).is_err());
@@ -287,6 +300,9 @@ impl LinearSystem {
     /// Adds functionals to the left sides of the equations that have their numbers, in any order, one equation more than
     /// once.
     pub fn join(&mut self, mut parts: Vec<(usize, SplitRow)>) {
+        if parts.is_empty() {
+            return;
+        }
         parts.sort_by_key(|(number, _)| *number);
         let mut numbers: Vec<usize> = Vec::new();
         let mut rows: Vec<Vec<(u32, f64)>> = Vec::new();
@@ -297,6 +313,7 @@ impl LinearSystem {
             for (_, part) in of_one {
                 entries.extend(&part.unknowns);
                 self.rhs[number] -= part.known;
+                self.is_beside[number] |= part.is_beside;
                 let holes = part.holes.iter();
                 holes.for_each(|(hole, value)| self.hole_columns[*hole as usize].push((number as u32, *value)));
             }
@@ -311,6 +328,13 @@ impl LinearSystem {
         }
     }
 
+    /// Appends row · x = 0, in which the row's columns are moved by `shift`.
+    pub fn push_homogeneous(&mut self, row: Row, shift: u32) {
+        self.matrix.push_row(row, shift);
+        self.rhs.push(0.0);
+        self.is_beside.push(false);
+    }
+
     /// Appends an equation.
     pub fn push(&mut self, equation: &Equation) {
         let number = self.rhs.len() as u32;
@@ -320,6 +344,7 @@ impl LinearSystem {
         let holes = equation.row.holes.iter();
         holes.for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
         self.rhs.push(equation.rhs - equation.row.known);
+        self.is_beside.push(equation.row.is_beside);
     }
 }
 

@@ -5,9 +5,10 @@
 //! all edges and no constants of holes.
 
 use crate::blend::NodalPolynomials;
-use crate::boundary_value::{Discrete, solve_discrete};
+use crate::boundary_value::{Around, Discrete, nodal_solution};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
+use crate::operator::Operator;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::solve::Event;
@@ -23,28 +24,46 @@ use nmt_tri::Mesh;
 /// The relative residual of the linear system that is good enough: any w gives a bound, and what is left enters it squared.
 const TARGET: f64 = 1.0e-7;
 
-/// The warping function of a section, made a field of stress.
-pub(crate) struct Warping {
-    field: NodalPolynomials,
+/// The warping function of a section at the nodes of its mesh.
+pub(crate) struct NodalWarping {
+    /// w, shape (n_nodes,).
+    pub values: Vec<f64>,
     /// r₀.
     centre: Point,
-    /// How the linear system was solved.
-    pub linear: LinearSolve,
+    linear: LinearSolve,
 }
 
-impl Warping {
-    /// Solves for w in the variational form, blends and hats, of the order of `params`, at least 2.
+/// How the warping function is found beside the solution of torsion with `params`: in the variational form, blends and hats,
+/// of the same order, at least 2.
+pub(crate) fn warping_params(params: &SolveParams) -> SolveParams {
+    SolveParams {
+        formulation: Formulation::Variational,
+        order: params.order_used().max(2),
+        trial: Trial::Blended,
+        test: Test::Hat,
+        smoothing: 0.0,
+        star: None,
+        gauss: None,
+        ..*params
+    }
+}
+
+impl NodalWarping {
+    /// Solves for w with [`warping_params`], its equations taken over from the `operator` of the stress function where
+    /// that has the same.
     ///
     /// w is known up to a constant: it is 0 at the first vertex.
     ///
     /// # Errors
     /// As [`crate::solve`]; [`MfdmError::Curve`] where an edge has no length.
     pub fn solve(
-        mesh: &Mesh,
+        around: Around,
         section: &Section,
         params: &SolveParams,
+        operator: Option<Operator>,
         observer: &mut dyn FnMut(Event),
     ) -> Result<Self, MfdmError> {
+        let mesh = around.mesh;
         let centre = mesh.centroid();
         let mut fluxes = Fluxes::default();
         visit_pieces(
@@ -65,20 +84,26 @@ impl Warping {
         let mut conditions = vec![NodeCondition::Flux; mesh.cloud().n_boundary()];
         conditions[0] = NodeCondition::Value(0.0);
         let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes, target: TARGET };
-        let params = SolveParams {
-            formulation: Formulation::Variational,
-            order: params.order_used().max(2),
-            trial: Trial::Blended,
-            test: Test::Hat,
-            smoothing: 0.0,
-            star: None,
-            gauss: None,
-            ..*params
-        };
-        let solved = solve_discrete(discrete, &params, observer)?;
-        Ok(Self { field: solved.field, centre, linear: solved.linear })
+        let (nodal, _) = nodal_solution(discrete, params, around, operator, observer)?;
+        Ok(Self { values: nodal.values, centre, linear: nodal.linear })
     }
 
+    /// Its stresses, from the field through its values.
+    pub fn with_field(self, field: NodalPolynomials) -> Warping {
+        Warping { field, centre: self.centre, linear: self.linear }
+    }
+}
+
+/// The warping function of a section, made a field of stress.
+pub(crate) struct Warping {
+    field: NodalPolynomials,
+    /// r₀.
+    centre: Point,
+    /// How the linear system was solved.
+    pub linear: LinearSolve,
+}
+
+impl Warping {
     /// σ at `p` in `triangle`.
     pub fn stress_at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
         self.with_rotation(p, self.field.slope(mesh, triangle, p).1)

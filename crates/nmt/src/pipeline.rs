@@ -18,7 +18,7 @@ use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use crate::report::place;
 use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Refinement, Section, SpacingFunction, generate};
 use nmt_merge::{EdgeNodes, Planned, conform};
-use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution, solve_observed};
+use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
 
 /// A stage of the pipeline.
@@ -374,10 +374,8 @@ pub fn solutions(
 fn solution_of(problem: &Problem, k: usize, part: MeshPart, observer: &mut Observer) -> Result<SolvedPart, NmtError> {
     let subdomain = &problem.subdomains[k];
     let params = problem.solve.params(subdomain.formulation);
-    let torsion = torsion(problem, subdomain);
-    let solution = solve_observed(&torsion, &part.mesh, &params, &mut of_solution(k, observer))
+    let (solution, estimate) = estimate::solve_part((k, problem), (&part, &params), observer)
         .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
-    let estimate = estimate::of_solution((k, problem), (&part, &params), &solution, observer);
     Ok(SolvedPart { part, params, solution, estimate, history: Vec::new() })
 }
 
@@ -402,19 +400,22 @@ pub(crate) fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<cr
     Some(problem.source.error(place, "[mesh]", message, "leave `elim` out"))
 }
 
-/// Tells what nmt-mfdm tells of subdomain `k`, the beginning of its stages included: each begins where the one before ends.
+/// The stages of a solution.
+const SOLUTION: [Stage; 4] = [Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Post];
+
+/// Tells what nmt-mfdm tells of a solution of subdomain `k`.
 pub(crate) fn of_solution<'a>(k: usize, observer: &'a mut Observer) -> impl FnMut(nmt_mfdm::Event) + 'a {
-    observer(k, Event::Begun(Stage::Stencils));
+    of_stages(k, &SOLUTION, observer)
+}
+
+/// Tells what nmt-mfdm tells of subdomain `k`, the beginnings of its `stages` included: each begins where the one before ends.
+fn of_stages<'a>(k: usize, stages: &'static [Stage], observer: &'a mut Observer) -> impl FnMut(nmt_mfdm::Event) + 'a {
+    let mut rest = stages.iter();
+    rest.next().into_iter().for_each(|first| observer(k, Event::Begun(*first)));
     move |event| match event {
         nmt_mfdm::Event::Ended(stage) => {
             observer(k, Event::Ended(stage.into()));
-            let next = match stage {
-                nmt_mfdm::Stage::Stencils => Some(Stage::Assemble),
-                nmt_mfdm::Stage::Assemble => Some(Stage::Solve),
-                nmt_mfdm::Stage::Solve => Some(Stage::Post),
-                nmt_mfdm::Stage::Post => None,
-            };
-            next.into_iter().for_each(|next| observer(k, Event::Begun(next)));
+            rest.next().into_iter().for_each(|next| observer(k, Event::Begun(*next)));
         }
         nmt_mfdm::Event::Nodes { done, of } => observer(k, Event::Nodes { done, of }),
         nmt_mfdm::Event::Iteration { iterations, residual, target } => {
@@ -430,6 +431,7 @@ impl From<nmt_mfdm::Stage> for Stage {
             nmt_mfdm::Stage::Assemble => Self::Assemble,
             nmt_mfdm::Stage::Solve => Self::Solve,
             nmt_mfdm::Stage::Post => Self::Post,
+            nmt_mfdm::Stage::Estimate => Self::Estimate,
         }
     }
 }

@@ -68,6 +68,21 @@ impl Csr {
         Self { starts: vec![0], columns: Vec::new(), values: Vec::new(), n_columns }
     }
 
+    /// No row yet, and room for so many entries.
+    pub fn with_room(n_columns: usize, n_rows: usize, n_entries: usize) -> Self {
+        let mut starts = Vec::with_capacity(n_rows + 1);
+        starts.push(0);
+        let (columns, values) = (Vec::with_capacity(n_entries), Vec::with_capacity(n_entries));
+        Self { starts, columns, values, n_columns }
+    }
+
+    /// Appends a row, its columns moved by `shift`.
+    pub fn push_row(&mut self, row: Row, shift: u32) {
+        self.columns.extend(row.columns.iter().map(|column| column + shift));
+        self.values.extend_from_slice(row.values);
+        self.end_row();
+    }
+
     /// Appends an entry to the row begun.
     #[inline]
     pub fn push(&mut self, column: u32, value: f64) {
@@ -85,13 +100,7 @@ impl Csr {
     pub fn stacked(n_columns: usize, pieces: &[Self]) -> Self {
         let n_rows: usize = pieces.iter().map(Self::n_rows).sum();
         let n_entries = pieces.iter().map(Self::n_entries).sum();
-        let mut stacked = Self {
-            starts: Vec::with_capacity(n_rows + 1),
-            columns: Vec::with_capacity(n_entries),
-            values: Vec::with_capacity(n_entries),
-            n_columns,
-        };
-        stacked.starts.push(0);
+        let mut stacked = Self::with_room(n_columns, n_rows, n_entries);
         pieces.iter().for_each(|piece| stacked.append(piece));
         stacked
     }

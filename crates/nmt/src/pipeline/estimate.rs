@@ -1,8 +1,10 @@
 //! How far a solution may be off, as far as the problem asks for it.
 
-use super::{Event, MeshPart, Observer, Stage, torsion};
+use super::{MeshPart, Observer, SOLUTION, Stage, of_stages, torsion};
 use crate::problem::Problem;
-use nmt_mfdm::{ErrorEstimate, HoleCondition, MfdmError, SolveParams, TorsionSolution, estimate_observed};
+use nmt_mfdm::{
+    ErrorEstimate, HoleCondition, MfdmError, SolveParams, TorsionSolution, solve_estimated, solve_observed,
+};
 
 /// How far a solution may be off.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,31 +43,32 @@ impl Estimated {
     }
 }
 
-/// The estimate for subdomain `k`; that there is none is no fault of the solution.
-pub(super) fn of_solution(
+/// Solves torsion in subdomain `k`, with the estimate that the problem asks for.
+///
+/// # Errors
+/// As [`nmt_mfdm::solve`].
+pub(super) fn solve_part(
     (k, problem): (usize, &Problem),
     (part, params): (&MeshPart, &SolveParams),
-    solution: &TorsionSolution,
     observer: &mut Observer,
-) -> Estimated {
-    if !problem.solve.estimate {
-        return Estimated::NotAsked;
-    }
-    observer(k, Event::Begun(Stage::Estimate));
-    let mut inner = |event| match event {
-        // The stages of the warping function are one stage of the estimate.
-        nmt_mfdm::Event::Ended(_) => {}
-        nmt_mfdm::Event::Nodes { done, of } => observer(k, Event::Nodes { done, of }),
-        nmt_mfdm::Event::Iteration { iterations, residual, target } => {
-            observer(k, Event::Iteration { iterations, residual, target });
-        }
-    };
+) -> Result<(TorsionSolution, Estimated), MfdmError> {
     let torsion = torsion(problem, &problem.subdomains[k]);
-    let estimated = estimate_observed(&torsion, &part.mesh, &part.section, params, solution, &mut inner);
-    observer(k, Event::Ended(Stage::Estimate));
-    match estimated {
+    if !problem.solve.estimate {
+        let solution = solve_observed(&torsion, &part.mesh, params, &mut of_stages(k, &SOLUTION, observer))?;
+        return Ok((solution, Estimated::NotAsked));
+    }
+    let is_bounded = torsion.has_torsion_constant(part.section.holes.len());
+    let stages = if is_bounded { &ESTIMATED[..] } else { &SOLUTION };
+    let observer = &mut of_stages(k, stages, observer);
+    let (solution, estimate) = solve_estimated(&torsion, &part.mesh, &part.section, params, observer)?;
+    let estimated = match estimate {
         Ok(Some(estimate)) => Estimated::By(Box::new(estimate)),
         Ok(None) => Estimated::NoTorsionConstant,
         Err(error) => Estimated::Failed(error),
-    }
+    };
+    Ok((solution, estimated))
 }
+
+/// The stages of a solution with its estimate: the warping function comes before the recovery of both, the bounds after.
+const ESTIMATED: [Stage; 6] =
+    [Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Estimate, Stage::Post, Stage::Estimate];
