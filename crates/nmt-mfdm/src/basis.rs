@@ -7,7 +7,7 @@ pub const MAX_ORDER: usize = 4;
 pub const MAX_MONOMIALS: usize = n_monomials(MAX_ORDER);
 
 /// 1/n: a multiplication costs a tenth of a division, and monomials are most of the work at Gauss points.
-const INVERSE: [f64; MAX_ORDER + 1] = [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
+pub(crate) const INVERSE: [f64; MAX_ORDER + 1] = [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
 
 /// Number of monomials of degree ≤ p: (p + 1)(p + 2)/2.
 pub const fn n_monomials(order: usize) -> usize {

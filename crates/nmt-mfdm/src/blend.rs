@@ -7,8 +7,9 @@
 use crate::basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
 use crate::error::MfdmError;
 use crate::gauss::{Rule, seven_points, six_points};
-use crate::mwls::dot;
+use crate::lanes::Lanes;
 use crate::parallel::{CHUNK, map_chunks, take_pieces};
+use crate::quadrature::RuleLanes;
 use crate::repair::Demand;
 use crate::solve::Event;
 use crate::sound_stars::{SoundStar, SoundStars, Wanted};
@@ -187,13 +188,19 @@ impl NodalPolynomials {
         self
     }
 
-    fn coefficients(&self, node: NodeId) -> &[f64] {
+    /// Order of what is blended.
+    pub(crate) fn blended_order(&self) -> usize {
+        self.blended_order
+    }
+
+    /// Taylor coefficients of a node's polynomial, in scaled coordinates.
+    pub(crate) fn coefficients(&self, node: NodeId) -> &[f64] {
         let n = n_monomials(self.order);
         &self.coefficients[node.index() * n..(node.index() + 1) * n]
     }
 
     /// Scaled coordinates by user's, along x and y: stretch over radius.
-    fn slopes(&self, node: NodeId) -> [f64; 2] {
+    pub(crate) fn slopes(&self, node: NodeId) -> [f64; 2] {
         self.metric.stretch().map(|stretch| stretch / self.radii[node.index()])
     }
 
@@ -309,30 +316,14 @@ impl NodalPolynomials {
 
     /// ∫F over the whole mesh, exact for the blend.
     pub fn volume(&self, mesh: &Mesh) -> f64 {
-        let rule = self.rule();
-        let parts = map_chunks(0..mesh.n_triangles(), |piece| {
-            piece.map(|t| self.triangle_volume(mesh, TriId::of(t), &rule)).collect::<Vec<f64>>()
-        });
+        let rule = RuleLanes::from(&self.rule());
+        let over = |triangle: TriId| {
+            let values = self.values_at(mesh, triangle, &rule);
+            let sums = rule.weights.iter().zip(values).fold(Lanes::default(), |sums, (weight, f)| sums + *weight * f);
+            mesh.area(triangle) * sums.sum()
+        };
+        let parts = map_chunks(0..mesh.n_triangles(), |piece| piece.map(|t| over(TriId::of(t))).collect::<Vec<f64>>());
         parts.into_iter().flatten().sum()
-    }
-
-    /// ∫F over a triangle: Σ over its corners a and Gauss points g of w_g·λ_a·P_a, values alone.
-    fn triangle_volume(&self, mesh: &Mesh, triangle: TriId, rule: &Rule) -> f64 {
-        let corners = mesh.corners(triangle);
-        let n = n_monomials(self.blended_order);
-        let mut sum = 0.0;
-        for (a, &node) in mesh.tri_nodes()[triangle.index()].iter().enumerate() {
-            let (coefficients, [s_x, s_y]) = (self.coefficients(node), self.slopes(node));
-            let scaled = |offset: Point| [offset[0] * s_x, offset[1] * s_y];
-            let [b, c] = [(a + 1) % 3, (a + 2) % 3].map(|k| scaled(sub(corners[k], corners[a])));
-            let mut basis = [0.0; MAX_MONOMIALS];
-            for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
-                let [to_b, to_c] = [lambda[(a + 1) % 3], lambda[(a + 2) % 3]];
-                monomials([to_b * b[0] + to_c * c[0], to_b * b[1] + to_c * c[1]], self.blended_order, &mut basis);
-                sum += weight * lambda[a] * dot(&coefficients[..n], &basis[..n]);
-            }
-        }
-        mesh.area(triangle) * sum
     }
 }
 

@@ -8,10 +8,12 @@
 
 use crate::boundary_value::{recover, with_surroundings};
 use crate::error::MfdmError;
-use crate::gauss::{Rule, six_points};
+use crate::gauss::six_points;
+use crate::lanes::Lanes;
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
 use crate::problem::{Load, TorsionProblem};
+use crate::quadrature::RuleLanes;
 use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
@@ -175,24 +177,27 @@ impl Both<'_> {
     }
 
     fn over_triangles(&self) -> Vec<Parts> {
-        let (mesh, rule) = (self.mesh, six_points());
+        let (mesh, rule) = (self.mesh, RuleLanes::from(&six_points()));
         let pieces = map_chunks(0..mesh.n_triangles(), |piece| {
             piece.map(|t| self.over(TriId::of(t), &rule)).collect::<Vec<Parts>>()
         });
         pieces.into_iter().flatten().collect()
     }
 
-    fn over(&self, triangle: TriId, rule: &Rule) -> Parts {
-        let (corners, area) = (self.mesh.corners(triangle), self.mesh.area(triangle));
-        let mut parts = Parts::default();
-        for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
-            let p = [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>());
-            let (_, v, sigma) = self.at(triangle, p);
-            let difference = sub(v, sigma);
-            parts.product += weight * area * dot(v, difference);
-            parts.square += weight * area * dot(difference, difference);
+    fn over(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
+        let (v, sigma) = (
+            self.solution.field.slopes_at(self.mesh, triangle, rule),
+            self.warping.stresses_at(self.mesh, triangle, rule),
+        );
+        let (scale, area) = (1.0 / self.solution.g_theta, self.mesh.area(triangle));
+        let [mut product, mut square] = [Lanes::default(); 2];
+        for ((v, sigma), weight) in v.iter().zip(sigma).zip(rule.weights) {
+            let slope = v.gradient.map(|slope| slope * scale);
+            let difference = [slope[0] - sigma[0], slope[1] - sigma[1]];
+            product += weight * (slope[0] * difference[0] + slope[1] * difference[1]);
+            square += weight * (difference[0] * difference[0] + difference[1] * difference[1]);
         }
-        parts
+        Parts { product: area * product.sum(), square: area * square.sum() }
     }
 
     /// τ at a node by both, and their difference, for Gθ = 1.

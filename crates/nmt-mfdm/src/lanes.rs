@@ -1,6 +1,6 @@
-//! Four numbers at a time, one of each of four stars: the compiler makes vector instructions of them.
+//! Four numbers at a time, one of each of four stars or points: the compiler makes vector instructions of them.
 //!
-//! A lane never looks at another, so that what comes out of it does not depend on whose company it is in.
+//! But for their sum a lane never looks at another, so that what comes out of it does not depend on whose company it is in.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -8,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// Numbers in [`Lanes`].
 pub(crate) const WIDTH: usize = 4;
 
-/// One number of each of four stars.
+/// One number of each of four stars or points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub(crate) struct Lanes(pub [f64; WIDTH]);
@@ -33,6 +33,12 @@ impl Lanes {
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
+    }
+
+    /// All four together.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]) + (self.0[2] + self.0[3])
     }
 
     /// The magnitude of `self` with the sign of `sign`.

@@ -50,6 +50,7 @@ mod params;
 mod poisson;
 mod post;
 mod problem;
+mod quadrature;
 mod quartet;
 mod repair;
 mod shapes;

@@ -4,7 +4,7 @@
 //! A = QR by reflections H_m = I − β v vᵀ. R⁻¹ gives the condition number; a functional c of the coefficients has the row
 //! Q·R⁻ᵀc, so that what is not asked for is not computed.
 
-use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
+use crate::basis::{INVERSE, MAX_MONOMIALS, n_monomials, row};
 use crate::lanes::{Lanes, WIDTH};
 use crate::mwls::is_on_one_line;
 use nmt_geom::point::sub;
@@ -12,9 +12,6 @@ use nmt_geom::{NodeId, Point};
 
 /// Columns of a system, at most: all monomials but the constant.
 const MAX_COLUMNS: usize = MAX_MONOMIALS - 1;
-
-/// 1/n, as [`crate::monomials`] has it.
-const INVERSE: [f64; MAX_ORDER + 1] = [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
 
 /// A star by its nodes, ascending, and which of them is the centre.
 #[derive(Clone, Copy)]

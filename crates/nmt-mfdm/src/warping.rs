@@ -8,9 +8,11 @@ use crate::blend::NodalPolynomials;
 use crate::boundary_value::{Around, Discrete, nodal_solution};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
+use crate::lanes::Lanes;
 use crate::operator::Operator;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
+use crate::quadrature::RuleLanes;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::source::Source;
@@ -20,6 +22,7 @@ use nmt_cloud::Section;
 use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::Mesh;
+use std::array::from_fn;
 
 /// The relative residual of the linear system that is good enough: any w gives a bound, and what is left enters it squared.
 const TARGET: f64 = 1.0e-7;
@@ -107,6 +110,13 @@ impl Warping {
     /// σ at `p` in `triangle`.
     pub fn stress_at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
         self.with_rotation(p, self.field.slope(mesh, triangle, p).1)
+    }
+
+    /// σ at the points of a rule on `triangle`.
+    pub fn stresses_at(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [[Lanes; 2]; 2] {
+        let places = rule.places(mesh.corners(triangle).map(|corner| sub(corner, self.centre)));
+        let w = self.field.slopes_at(mesh, triangle, rule);
+        from_fn(|k| [w[k].gradient[1] - places[k][0], -w[k].gradient[0] - places[k][1]])
     }
 
     /// σ at a node, of its own polynomial.

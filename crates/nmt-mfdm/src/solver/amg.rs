@@ -94,7 +94,7 @@ impl<'a> Hierarchy<'a> {
                 weights.iter_mut().zip(&is_weak).filter(|(_, weak)| **weak).for_each(|(weight, _)| *weight = 0.0);
                 restrictor.scale_columns(&weights);
             }
-            let coarse = restrictor.product(&matrix.product(&prolongator));
+            let coarse = matrix.between(&restrictor, &prolongator);
             levels.push(Level { matrix, smoother, prolongator, restrictor });
             matrix = Cow::Owned(coarse);
             threshold *= 0.5;

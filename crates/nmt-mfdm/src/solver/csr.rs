@@ -1,13 +1,13 @@
 //! Sparse matrices by rows, and their products.
 
-use crate::parallel::{fill_pieces, map_pieces};
+use crate::parallel::{fill_pieces, large_pieces, take_pieces};
 use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
 const ROWS: usize = 4096;
 
-/// Rows per piece of a matrix × matrix product: each piece has a marker as long as a row.
-const PRODUCT_ROWS: usize = 1 << 15;
+/// Rows per piece of a product of matrices, at least.
+const PRODUCT_ROWS: usize = 1 << 11;
 
 /// A sparse matrix by rows; columns ascend in a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -254,32 +254,81 @@ impl Csr {
         self.values.copy_within(from, to);
     }
 
-    /// A·B.
-    pub fn product(&self, other: &Self) -> Self {
-        let pieces = map_pieces(0..self.n_rows(), PRODUCT_ROWS, |rows| {
-            let mut piece = Self::new(other.n_columns);
-            let mut slots = vec![u32::MAX; other.n_columns]; // of each column in the row under way
-            let mut row: Vec<(u32, f64)> = Vec::new();
-            for i in rows {
-                for (k, a) in self.row(i).entries() {
-                    for (column, b) in other.row(k).entries() {
-                        let slot = &mut slots[column];
-                        if *slot == u32::MAX {
-                            *slot = row.len() as u32;
-                            row.push((column as u32, a * b));
-                        } else {
-                            row[*slot as usize].1 += a * b;
-                        }
+    /// R·A·P, this matrix being A.
+    ///
+    /// The rows of A·P are made where a row of R first asks for them, and dropped with the piece of the result: all of them would
+    /// be as large as A. Rows of R that are near each other ask for the same ones.
+    pub fn between(&self, restrictor: &Self, prolongator: &Self) -> Self {
+        let n = prolongator.n_columns;
+        let piece = |rows: Range<usize>| {
+            let mut piece = Self::new(n);
+            let columns = || restrictor.columns[restrictor.starts[rows.start]..restrictor.starts[rows.end]].iter();
+            let first = columns().min().map_or(0, |column| *column as usize);
+            let end = columns().max().map_or(0, |column| *column as usize + 1);
+            let mut numbers = vec![NONE; end - first]; // of the row of A·P for each of A
+            let mut products = Self::new(n);
+            let (mut inner, mut outer) = (RowUnderWay::new(n), RowUnderWay::new(n));
+            for i in rows.clone() {
+                for (k, r) in restrictor.row(i).entries() {
+                    let number = &mut numbers[k - first];
+                    if *number == NONE {
+                        *number = products.n_rows() as u32;
+                        self.row(k).entries().for_each(|(l, a)| inner.add(a, prolongator.row(l)));
+                        inner.end(&mut products);
                     }
+                    outer.add(r, products.row(*number as usize));
                 }
-                row.iter().for_each(|(column, _)| slots[*column as usize] = u32::MAX);
-                row.sort_unstable_by_key(|(column, _)| *column);
-                row.drain(..).for_each(|(column, value)| piece.push(column, value));
-                piece.end_row();
+                outer.sort();
+                outer.end(&mut piece);
             }
             piece
-        });
-        Self::stacked(other.n_columns, &pieces)
+        };
+        let n_rows = restrictor.n_rows();
+        let mut all = Self::new(n);
+        take_pieces(0..n_rows, large_pieces(n_rows).max(PRODUCT_ROWS), piece, |piece| all.append(&piece));
+        all
+    }
+}
+
+/// No number.
+const NONE: u32 = u32::MAX;
+
+/// A row that is summed up.
+struct RowUnderWay {
+    slots: Vec<u32>, // of each column
+    entries: Vec<(u32, f64)>,
+}
+
+impl RowUnderWay {
+    fn new(n_columns: usize) -> Self {
+        Self { slots: vec![NONE; n_columns], entries: Vec::new() }
+    }
+
+    /// Adds a multiple of a row.
+    #[inline]
+    fn add(&mut self, factor: f64, row: Row) {
+        for (column, value) in row.entries() {
+            let slot = &mut self.slots[column];
+            if *slot == NONE {
+                *slot = self.entries.len() as u32;
+                self.entries.push((column as u32, factor * value));
+            } else {
+                self.entries[*slot as usize].1 += factor * value;
+            }
+        }
+    }
+
+    fn sort(&mut self) {
+        self.entries.sort_unstable_by_key(|(column, _)| *column);
+    }
+
+    /// Appends it to a matrix; begins the next.
+    fn end(&mut self, to: &mut Csr) {
+        for (column, value) in self.entries.drain(..) {
+            self.slots[column as usize] = NONE;
+            to.push(column, value);
+        }
+        to.end_row();
     }
 }
 
@@ -306,10 +355,11 @@ pub(crate) mod tests {
 
     #[test]
     fn products_and_transposes_are_those_of_dense_matrices() {
-        let (a, b) = (scattered(7, 11), scattered(11, 5));
-        let entry = |i: usize, j: usize| (0..11).map(|k| a[i][k] * b[k][j]).sum::<f64>();
-        let dense: Vec<Vec<f64>> = (0..7).map(|i| (0..5).map(|j| entry(i, j)).collect()).collect();
-        assert_eq!(of_dense(&a).product(&of_dense(&b)), of_dense(&dense)); // integers: no rounding
+        let (r, a, p) = (scattered(6, 7), scattered(7, 11), scattered(11, 5));
+        let along = |i: usize, k: usize, j: usize| (0..11).map(|l| r[i][k] * a[k][l] * p[l][j]).sum::<f64>();
+        let entry = |i: usize, j: usize| (0..7).map(|k| along(i, k, j)).sum::<f64>();
+        let dense: Vec<Vec<f64>> = (0..6).map(|i| (0..5).map(|j| entry(i, j)).collect()).collect();
+        assert_eq!(of_dense(&a).between(&of_dense(&r), &of_dense(&p)), of_dense(&dense)); // integers: no rounding
         let transposed: Vec<Vec<f64>> = (0..11).map(|j| (0..7).map(|i| a[i][j]).collect()).collect();
         assert_eq!(of_dense(&a).transpose(), of_dense(&transposed));
         let x: Vec<f64> = (0..11).map(f64::from).collect();
