@@ -81,12 +81,11 @@ pub(crate) fn solve_discrete(
     params: &SolveParams,
     observer: &mut dyn FnMut(Event),
 ) -> Result<(NodalSolution, NodalPolynomials), MfdmError> {
-    with_surroundings(discrete.mesh, |around| {
-        let (nodal, operator) = nodal_solution(discrete, params, around, None, observer)?;
-        drop(operator);
-        let [field] = recover(around, params, [&nodal.values], observer)?;
-        Ok((nodal, field))
-    })
+    let mesh = discrete.mesh;
+    let (nodal, operator) = nodal_solution(discrete, params, None, observer)?;
+    drop(operator);
+    let [field] = recover(mesh, params, [&nodal.values], observer)?;
+    Ok((nodal, field))
 }
 
 /// Solves a problem for the values at the nodes, its equations made anew, or from the operator of another problem with
@@ -98,23 +97,27 @@ pub(crate) fn solve_discrete(
 pub(crate) fn nodal_solution(
     discrete: Discrete,
     params: &SolveParams,
-    around: Around,
     from: Option<Operator>,
     observer: &mut dyn FnMut(Event),
 ) -> Result<(NodalSolution, Option<Operator>), MfdmError> {
     params.check()?;
     let Discrete { mesh, conditions, source, fluxes, target } = discrete;
     let roles = roles(conditions, mesh, params);
-    let (rule, source_rule) = (params.rule()?, source_rule(params));
-    let frame = Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-    let Assembled { system, equations, stars, used_stars, smoothing, holds } = match from {
-        Some(operator) => {
-            let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
-            Assembled::of(operator.equations(frame, (around.surroundings, around.nearest), stars, &rule)?)
+    // What surrounds the nodes is made again for the recovery: the linear solver needs its room.
+    let assembled = with_surroundings(mesh, |around| {
+        let (rule, source_rule) = (params.rule()?, source_rule(params));
+        let frame =
+            Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+        match from {
+            Some(operator) => {
+                let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
+                operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
+            }
+            None if is_batched(params) => assemble_in_batches(frame, around, params, &rule, observer),
+            None => assemble_at_once(frame, around, params, &rule, observer),
         }
-        None if is_batched(params) => assemble_in_batches(frame, around, params, &rule, observer)?,
-        None => assemble_at_once(frame, around, params, &rule, observer)?,
-    };
+    });
+    let Assembled { system, equations, stars, used_stars, smoothing, holds } = assembled?;
     observer(Event::Ended(Stage::Assemble));
 
     let Nodal { values, constants, linear } =
@@ -136,20 +139,22 @@ pub(crate) fn nodal_solution(
 /// # Errors
 /// [`MfdmError::PoorStar`] where a node sees too few others for a plane.
 pub(crate) fn recover<const N: usize>(
-    around: Around,
+    mesh: &Mesh,
     params: &SolveParams,
     values: [&[f64]; N],
     observer: &mut dyn FnMut(Event),
 ) -> Result<[NodalPolynomials; N], MfdmError> {
     if params.formulation == Formulation::Fem {
-        return Ok(values.map(|values| NodalPolynomials::linear(around.mesh, values)));
+        return Ok(values.map(|values| NodalPolynomials::linear(mesh, values)));
     }
     let order = params.recovery_order();
-    let recovery = StarParams {
-        choice: params.stars.unwrap_or_default(),
-        ..StarParams::nearest(order, around.surroundings.metric().star_size(default_star(order)))
-    };
-    NodalPolynomials::fit_fields((around.surroundings, around.nearest), recovery, values, observer)
+    with_surroundings(mesh, |Around { surroundings, nearest, .. }| {
+        let recovery = StarParams {
+            choice: params.stars.unwrap_or_default(),
+            ..StarParams::nearest(order, surroundings.metric().star_size(default_star(order)))
+        };
+        NodalPolynomials::fit_fields((surroundings, nearest), recovery, values, observer)
+    })
 }
 
 /// What the linear solver and the results take.
@@ -399,14 +404,15 @@ fn solve_system(
     (choice, target): (Solver, f64),
     observer: &mut dyn FnMut(Event),
 ) -> Result<Nodal, MfdmError> {
-    let mut right_sides = vec![system.rhs.clone()];
-    for column in &system.hole_columns {
+    let of_hole = |column: &Vec<(u32, f64)>| {
         let mut b = vec![0.0; system.n()];
         column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
-        right_sides.push(b);
-    }
+        b
+    };
+    let of_holes: Vec<Vec<f64>> = system.hole_columns.iter().map(of_hole).collect();
+    let right_sides: Vec<&[f64]> = std::iter::once(&system.rhs).chain(&of_holes).map(Vec::as_slice).collect();
     let solver::Solutions { x, how } =
-        solver::solve(system, &roles.places(xy), &right_sides, choice, target, observer)?;
+        solver::solve(system, &|| roles.places(xy), &right_sides, choice, target, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
     };

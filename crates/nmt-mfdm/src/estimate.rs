@@ -6,7 +6,7 @@
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.
 
-use crate::boundary_value::{recover, with_surroundings};
+use crate::boundary_value::recover;
 use crate::error::MfdmError;
 use crate::gauss::six_points;
 use crate::lanes::Lanes;
@@ -104,11 +104,9 @@ pub fn estimate_observed(
         return Ok(None);
     }
     let params = warping_params(params);
-    let warping = with_surroundings(mesh, |around| {
-        let nodal = NodalWarping::solve(around, section, &params, None, observer)?;
-        let [field] = recover(around, &params, [&nodal.values], observer)?;
-        Ok(nodal.with_field(field))
-    })?;
+    let nodal = NodalWarping::solve(mesh, section, &params, None, observer)?;
+    let [field] = recover(mesh, &params, [&nodal.values], observer)?;
+    let warping = nodal.with_field(field);
     bounds(problem, mesh, section, solution, &warping).map(Some)
 }
 

@@ -1,7 +1,7 @@
 //! The torsion problem from mesh to results: the discrete problem for Gθ = 1, scaled.
 
 use crate::blend::NodalPolynomials;
-use crate::boundary_value::{Discrete, NodalSolution, nodal_solution, recover, solve_discrete, with_surroundings};
+use crate::boundary_value::{Discrete, NodalSolution, nodal_solution, recover, solve_discrete};
 use crate::circulation::hole_area;
 use crate::error::MfdmError;
 use crate::estimate::{ErrorEstimate, bounds};
@@ -116,27 +116,24 @@ pub fn solve_estimated(
     }
     let of_warping = warping_params(params);
     let is_same = of_warping == *params;
-    let (nodal, fields) = with_surroundings(mesh, |around| {
-        let (nodal, operator) = nodal_solution(discrete(problem, mesh), params, around, None, observer)?;
-        let operator = operator.filter(|_| is_same);
-        let warping = NodalWarping::solve(around, section, &of_warping, operator, &mut within(observer));
-        observer(Event::Ended(Stage::Estimate));
-        let fields = match warping {
-            Ok(warping) if is_same => {
-                let values = [&nodal.values[..], &warping.values];
-                recover(around, params, values, observer).map(|[field, w]| (field, Ok(warping.with_field(w))))
-            }
-            warping => recover(around, params, [&nodal.values], observer).map(|[field]| {
-                let recovered = warping.and_then(|warping| {
-                    let [w] = recover(around, &of_warping, [&warping.values], observer)?;
-                    Ok(warping.with_field(w))
-                });
-                (field, recovered)
-            }),
-        };
-        fields.map(|fields| (nodal, fields))
-    })?;
-    let (field, warping) = fields;
+    let (nodal, operator) = nodal_solution(discrete(problem, mesh), params, None, observer)?;
+    let operator = operator.filter(|_| is_same);
+    let warping = NodalWarping::solve(mesh, section, &of_warping, operator, &mut within(observer));
+    observer(Event::Ended(Stage::Estimate));
+    let (field, warping) = match warping {
+        Ok(warping) if is_same => {
+            let [field, w] = recover(mesh, params, [&nodal.values, &warping.values], observer)?;
+            (field, Ok(warping.with_field(w)))
+        }
+        warping => {
+            let [field] = recover(mesh, params, [&nodal.values], observer)?;
+            let recovered = warping.and_then(|warping| {
+                let [w] = recover(mesh, &of_warping, [&warping.values], observer)?;
+                Ok(warping.with_field(w))
+            });
+            (field, recovered)
+        }
+    };
     let solution = results(problem, mesh, nodal, field)?;
     observer(Event::Ended(Stage::Post));
     let estimate = warping.and_then(|warping| bounds(problem, mesh, section, &solution, &warping).map(Some));

@@ -50,26 +50,26 @@ pub(crate) struct Solutions {
 
 /// Solves A·x = b for every right side, with one set-up for all.
 ///
-/// `xy` are the places of the unknowns, shape (n, 2); `target` is the relative residual that an iteration goes on to. Where
+/// `places` gives those of the unknowns, shape (n, 2), where the direct solver asks for them; `target` is the relative residual that an iteration goes on to. Where
 /// it does not converge, the direct solver takes over.
 ///
 /// # Errors
 /// [`MfdmError::Singular`], [`MfdmError::Memory`], or [`MfdmError::Residual`] where no solver finds a solution.
 pub(crate) fn solve(
     system: &LinearSystem,
-    xy: &[Point],
-    right_sides: &[Vec<f64>],
+    places: &dyn Fn() -> Vec<Point>,
+    right_sides: &[&[f64]],
     choice: Solver,
     target: f64,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Solutions, MfdmError> {
-    solve_within(system, xy, right_sides, choice, Limits { target, ..LIMITS }, observer)
+    solve_within(system, places, right_sides, choice, Limits { target, ..LIMITS }, observer)
 }
 
 fn solve_within(
     system: &LinearSystem,
-    xy: &[Point],
-    right_sides: &[Vec<f64>],
+    places: &dyn Fn() -> Vec<Point>,
+    right_sides: &[&[f64]],
     choice: Solver,
     limits: Limits,
     observer: &mut dyn FnMut(Event),
@@ -78,18 +78,13 @@ fn solve_within(
     if iterates && let Some(solutions) = iterate(&system.matrix, right_sides, limits, observer) {
         return Ok(solutions);
     }
-    let direct::Solutions { x, residual } = direct::solve(system, xy, right_sides)?;
+    let direct::Solutions { x, residual } = direct::solve(system, &places(), right_sides)?;
     let how = LinearSolve { method: Method::Direct, residual, iteration: None, fell_back: iterates };
     Ok(Solutions { x, how })
 }
 
 /// CG or BiCGSTAB with a multigrid cycle; `None` where one right side does not converge.
-fn iterate(
-    matrix: &Csr,
-    right_sides: &[Vec<f64>],
-    limits: Limits,
-    observer: &mut dyn FnMut(Event),
-) -> Option<Solutions> {
+fn iterate(matrix: &Csr, right_sides: &[&[f64]], limits: Limits, observer: &mut dyn FnMut(Event)) -> Option<Solutions> {
     let mut told = |iterations, residual| observer(Event::Iteration { iterations, residual, target: limits.target });
     let symmetry = if matrix.is_symmetric(SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
     let hierarchy = Hierarchy::new(matrix, symmetry)?;
@@ -155,10 +150,11 @@ mod tests {
         for (wind, method) in [(0.0, Method::Cg), (0.3, Method::Bicgstab)] {
             let (system, xy) = differences(60, wind);
             let other: Vec<f64> = (0..system.n()).map(|i| f64::from(i as u32 % 7) - 3.0).collect();
-            let right_sides = [system.rhs.clone(), other, vec![0.0; system.n()]];
-            let direct = solve(&system, &xy, &right_sides, Solver::Auto, TARGET, &mut |_| {})?;
+            let zero = vec![0.0; system.n()];
+            let right_sides = [&system.rhs[..], &other, &zero];
+            let direct = solve(&system, &|| xy.clone(), &right_sides, Solver::Auto, TARGET, &mut |_| {})?;
             assert_eq!((direct.how.method, direct.how.iteration), (Method::Direct, None));
-            let iterated = solve(&system, &xy, &right_sides, Solver::Iterative, TARGET, &mut |_| {})?;
+            let iterated = solve(&system, &|| xy.clone(), &right_sides, Solver::Iterative, TARGET, &mut |_| {})?;
             assert_eq!((iterated.how.method, iterated.how.fell_back), (method, false));
             let iteration = iterated.how.iteration.unwrap_or_default();
             // 12 and 11 measured, three levels, 1.5.
@@ -177,8 +173,7 @@ mod tests {
     fn what_does_not_converge_falls_back_and_says_so() -> Result<(), MfdmError> {
         let (system, xy) = differences(40, 0.2);
         let limits = Limits { iterations: 2, ..LIMITS };
-        let solutions =
-            solve_within(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, limits, &mut |_| {})?;
+        let solutions = solve_within(&system, &|| xy.clone(), &[&system.rhs], Solver::Iterative, limits, &mut |_| {})?;
         assert!(solutions.how.fell_back && solutions.how.method == Method::Direct);
         assert!(solutions.how.iteration.is_none() && solutions.how.residual < 1e-12);
         Ok(())
@@ -203,10 +198,7 @@ mod tests {
         }
         let xy: Vec<Point> = (0..n).map(|i| [f64::from(i), 0.0]).collect();
         for choice in Solver::ALL {
-            assert!(
-                solve(&system, &xy, std::slice::from_ref(&system.rhs), choice, TARGET, &mut |_| {}).is_err(),
-                "{choice:?}"
-            );
+            assert!(solve(&system, &|| xy.clone(), &[&system.rhs], choice, TARGET, &mut |_| {}).is_err(), "{choice:?}");
         }
     }
 
@@ -229,10 +221,10 @@ mod tests {
             }
             system.push(&Equation { row, rhs: sound.rhs[k] });
         }
-        let iterated = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Iterative, TARGET, &mut |_| {})?;
+        let iterated = solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Iterative, TARGET, &mut |_| {})?;
         let iterations = iterated.how.iteration.unwrap_or_default().iterations;
         assert!((1..40).contains(&iterations), "{iterations}");
-        let direct = solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Direct, TARGET, &mut |_| {})?;
+        let direct = solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Direct, TARGET, &mut |_| {})?;
         assert!(largest_difference(&iterated.x[0], &direct.x[0]) < 1e-9); // residual 1e-10
         Ok(())
     }
@@ -244,9 +236,8 @@ mod tests {
         let (system, xy) = differences(200, 0.3);
         let solve = |threads: usize| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-            let mut solutions = pool.install(|| {
-                solve(&system, &xy, std::slice::from_ref(&system.rhs), Solver::Auto, TARGET, &mut |_| {})
-            })?;
+            let mut solutions =
+                pool.install(|| solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Auto, TARGET, &mut |_| {}))?;
             assert_eq!(solutions.how.method, Method::Bicgstab);
             Ok(solutions.x.swap_remove(0))
         };

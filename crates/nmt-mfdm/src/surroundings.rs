@@ -5,6 +5,7 @@ use crate::visibility::Visibility;
 use nmt_cloud::{Cloud, Nearest};
 use nmt_geom::tol::SAME_POINT_REL;
 use nmt_geom::{NodeId, Point};
+use std::borrow::Cow;
 
 /// Spacings whose ratio is at most this count as equal, and distances are plain.
 ///
@@ -86,7 +87,7 @@ fn above(ratio: f64, limit: f64) -> bool {
 #[derive(Clone, Debug)]
 pub struct Surroundings<'a> {
     xy: &'a [Point],
-    stretched: Vec<Point>,
+    stretched: Cow<'a, [Point]>,
     metric: Metric,
     visibility: Visibility,
     n_boundary: usize,
@@ -96,7 +97,10 @@ impl<'a> Surroundings<'a> {
     /// Prepares the search for stars in `cloud`.
     pub fn new(cloud: &'a Cloud) -> Self {
         let metric = Metric::of(cloud);
-        let stretched = cloud.xy().iter().map(|p| metric.stretched(*p)).collect();
+        let stretched = match metric.stretch() {
+            [1.0, 1.0] => Cow::Borrowed(cloud.xy()),
+            _ => cloud.xy().iter().map(|p| metric.stretched(*p)).collect(),
+        };
         Self { xy: cloud.xy(), stretched, metric, visibility: Visibility::new(cloud), n_boundary: cloud.n_boundary() }
     }
 

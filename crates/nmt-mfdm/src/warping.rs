@@ -5,7 +5,7 @@
 //! all edges and no constants of holes.
 
 use crate::blend::NodalPolynomials;
-use crate::boundary_value::{Around, Discrete, nodal_solution};
+use crate::boundary_value::{Discrete, nodal_solution};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::lanes::Lanes;
@@ -60,13 +60,12 @@ impl NodalWarping {
     /// # Errors
     /// As [`crate::solve`]; [`MfdmError::Curve`] where an edge has no length.
     pub fn solve(
-        around: Around,
+        mesh: &Mesh,
         section: &Section,
         params: &SolveParams,
         operator: Option<Operator>,
         observer: &mut dyn FnMut(Event),
     ) -> Result<Self, MfdmError> {
-        let mesh = around.mesh;
         let centre = mesh.centroid();
         let mut fluxes = Fluxes::default();
         visit_pieces(
@@ -87,7 +86,7 @@ impl NodalWarping {
         let mut conditions = vec![NodeCondition::Flux; mesh.cloud().n_boundary()];
         conditions[0] = NodeCondition::Value(0.0);
         let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes, target: TARGET };
-        let (nodal, _) = nodal_solution(discrete, params, around, operator, observer)?;
+        let (nodal, _) = nodal_solution(discrete, params, operator, observer)?;
         Ok(Self { values: nodal.values, centre, linear: nodal.linear })
     }
 

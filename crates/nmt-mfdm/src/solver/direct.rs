@@ -33,7 +33,7 @@ pub(crate) struct Solutions {
 /// # Errors
 /// [`MfdmError::Singular`], [`MfdmError::Memory`], or [`MfdmError::Residual`] where a solution does not satisfy its
 /// equations.
-pub(crate) fn solve(system: &LinearSystem, xy: &[Point], right_sides: &[Vec<f64>]) -> Result<Solutions, MfdmError> {
+pub(crate) fn solve(system: &LinearSystem, xy: &[Point], right_sides: &[&[f64]]) -> Result<Solutions, MfdmError> {
     let n = system.n();
     let factors = Factors::new(system, xy)?;
     let solve_once = |b: &[f64]| factors.solve(b);
@@ -289,7 +289,7 @@ mod tests {
     fn several_right_sides_share_one_factorisation_and_satisfy_their_equations() -> Result<(), MfdmError> {
         let system = tridiagonal(200);
         let other: Vec<f64> = (0..200).map(|i| f64::from(i % 7) - 3.0).collect();
-        let solutions = solve(&system, &line(200), &[system.rhs.clone(), other.clone(), vec![0.0; 200]])?;
+        let solutions = solve(&system, &line(200), &[&system.rhs, &other, &[0.0; 200]])?;
         for (x, b) in solutions.x.iter().zip([&system.rhs, &other]) {
             let worst = system.matrix.apply(x).iter().zip(b).map(|(ax, b)| (ax - b).abs()).fold(0.0, f64::max);
             assert!(worst < 1e-12); // rounding of numbers up to 200
@@ -309,6 +309,6 @@ mod tests {
             system.push(&Equation { row, rhs: 1.0 });
         }
         system.rhs[1] = 2.0;
-        assert!(solve(&system, &line(2), &[system.rhs.clone()]).is_err());
+        assert!(solve(&system, &line(2), &[&system.rhs]).is_err());
     }
 }
