@@ -7,7 +7,8 @@ pub const MAX_ORDER: usize = 4;
 pub const MAX_MONOMIALS: usize = n_monomials(MAX_ORDER);
 
 /// 1/n: a multiplication costs a tenth of a division, and monomials are most of the work at Gauss points.
-pub(crate) const INVERSE: [f64; MAX_ORDER + 1] = [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
+pub(crate) const INVERSE: [f64; MAX_ORDER + 4] =
+    [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0];
 
 /// Number of monomials of degree ≤ p: (p + 1)(p + 2)/2.
 pub const fn n_monomials(order: usize) -> usize {
@@ -29,10 +30,10 @@ pub const fn row(a: usize, b: usize) -> usize {
 /// nmt_mfdm::monomials([2.0, 3.0], 2, &mut out);
 /// assert_eq!(out[..6], [1.0, 2.0, 3.0, 2.0, 6.0, 4.5]);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn monomials([h, k]: [f64; 2], order: usize, out: &mut [f64]) {
     out[0] = 1.0;
-    for degree in 1..=order {
+    for degree in 1..order + 1 {
         let (first, below) = (degree * (degree + 1) / 2, (degree - 1) * degree / 2);
         // hᵃkᵇ/(a! b!) from the row below: times h/a, and the last one times k/b.
         for b in 0..degree {

@@ -102,7 +102,7 @@ fn assemble_by(
     }
     let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
     let stencils = making.stencils(of_holes)?;
-    let weak = WeakForm::blended(frame.mesh, &stencils, frame.fluxes, rule);
+    let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
     let equations = hole_equations(frame.mesh, &weak, frame.node_tris, frame.roles, Formulation::Variational);
     let mut report = StarReport { size: stars.size, ..StarReport::default() };
     making.outcomes.iter().for_each(|outcome| report.add(outcome, stars.order));
@@ -124,10 +124,9 @@ struct Making<'a> {
 impl Making<'_> {
     /// The equations of unknowns, ascending, each with the polynomials of the nodes around.
     fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<Equation>, MfdmError> {
-        let mesh = self.frame.mesh;
         let stencils = self.stencils(nodes_around(self.frame, unknowns))?;
         let setting: Setting = self.frame.with(&stencils);
-        let weak = WeakForm::blended(mesh, &stencils, self.frame.fluxes, self.rule);
+        let weak = WeakForm::blended(&stencils, self.frame.fluxes, self.rule);
         let pieces = map_pieces(0..unknowns.len(), PIECE, |piece| {
             let mut maker = EquationMaker::new(&setting, &weak);
             unknowns[piece].iter().map(|&k| maker.of(k)).collect::<Result<Vec<_>, _>>()
@@ -187,11 +186,11 @@ mod tests {
         for order in 2..=4 {
             let stars = StarParams::nearest(order, default_star(order));
             let mut stencils = Stencils::new(around.0, around.1, stars, 0..n_nodes);
-            let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
+            let weak = WeakForm::blended(&stencils, &fluxes, &rule);
             let mut system = variational::assemble(&frame.with(&stencils), &weak).expect("a system");
             let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..roles.n_unknowns).expect("a system");
             assert!(order > 2 || !larger.is_empty(), "some star of order 2 is mended");
-            let weak = WeakForm::blended(&mesh, &stencils, &fluxes, &rule);
+            let weak = WeakForm::blended(&stencils, &fluxes, &rule);
             let holes = hole_equations(&mesh, &weak, &node_tris, &roles, Formulation::Variational);
             for batch in [37, 10_000] {
                 let found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");

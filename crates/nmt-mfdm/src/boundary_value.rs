@@ -235,7 +235,7 @@ fn assemble_at_once(
     let weak = match params.formulation {
         Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
         Formulation::Local | Formulation::Fem => {
-            WeakForm::blended(mesh, of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
+            WeakForm::blended(of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
         }
     };
     let system = match (mended, params.formulation, params.test) {
@@ -367,7 +367,7 @@ fn mended_system(
     if !is_mended(params) {
         return Ok(None);
     }
-    let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
+    let weak = WeakForm::blended(stencils, frame.fluxes, rule);
     let mut system = variational::assemble(&frame.with(stencils), &weak)?;
     drop(weak);
     let around = (around.surroundings, around.nearest);

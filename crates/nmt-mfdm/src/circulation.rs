@@ -1,6 +1,6 @@
 //! The weak equation of the constant on each hole: ∮ ∂F/∂n ds = 2GθA in the form ∫∇F·∇v = 2Gθ(∫v + A) \[D12\].
 
-use crate::blend::barycentric_gradients;
+use crate::element::Element;
 use crate::problem::Formulation;
 use crate::system::{Equation, Roles, RowSum};
 use crate::weak::{Gathered, WeakForm};
@@ -27,10 +27,10 @@ pub(crate) fn hole_equations(
     let (mut sum, mut gathered) = (RowSum::new(mesh.cloud().n_nodes()), Gathered::default());
     let equation = |ring: Ring| {
         for &t in ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]) {
-            let slopes = barycentric_gradients(mesh.corners(t));
+            let element = Element::new(mesh, t);
             let of_one = ring.corners_of_one(mesh, t);
-            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
-            weak.add(std::iter::once((t, slope)), &mut gathered, &mut sum);
+            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| element.slopes[a][d]).sum());
+            weak.add(std::iter::once((&element, slope)), &mut gathered, &mut sum);
         }
         let n_ones = |t: TriId| ring.corners_of_one(mesh, t).iter().filter(|one| **one).count() as f64;
         let integral = |t: &TriId| mesh.area(*t) * n_ones(*t) / 3.0;

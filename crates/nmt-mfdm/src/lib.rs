@@ -30,6 +30,7 @@ mod boundary_value;
 mod circulation;
 mod diagnostics;
 mod edge_stress;
+mod element;
 mod error;
 mod estimate;
 pub mod exact;

@@ -49,7 +49,7 @@ pub(crate) fn mend(
         stencils.replace(around.0, around.1, &larger);
         sizes.extend(larger);
         let setting: Setting = frame.with(stencils);
-        let weak = WeakForm::blended(frame.mesh, stencils, frame.fluxes, rule);
+        let weak = WeakForm::blended(stencils, frame.fluxes, rule);
         let mut maker = EquationMaker::new(&setting, &weak);
         let touched = touched(frame, &soft);
         let anew = touched.iter().map(|&k| Ok((k, maker.of(k)?)));

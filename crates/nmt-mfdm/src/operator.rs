@@ -79,7 +79,7 @@ impl Operator {
 
 /// The equations of unknowns, in their order, with their numbers.
 fn equations_of(setting: &Setting, rule: &Rule, unknowns: &[usize]) -> Result<Vec<(usize, Equation)>, MfdmError> {
-    let weak = WeakForm::blended(setting.frame.mesh, setting.stencils, setting.frame.fluxes, rule);
+    let weak = WeakForm::blended(setting.stencils, setting.frame.fluxes, rule);
     let pieces = map_chunks(0..unknowns.len(), |piece| {
         let mut maker = EquationMaker::new(setting, &weak);
         unknowns[piece].iter().map(|&k| Ok((k, maker.of(k)?))).collect::<Result<Vec<_>, MfdmError>>()
@@ -106,7 +106,7 @@ mod tests {
     fn whole(frame: Frame, around: (&Surroundings, &Nearest), params: StarParams) -> (LinearSystem, Operator) {
         let (rule, n_nodes) = (three_points(), frame.mesh.cloud().n_nodes());
         let mut stencils = Stencils::new(around.0, around.1, params, 0..n_nodes);
-        let weak = WeakForm::blended(frame.mesh, &stencils, frame.fluxes, &rule);
+        let weak = WeakForm::blended(&stencils, frame.fluxes, &rule);
         let mut system = variational::assemble(&frame.with(&stencils), &weak).expect("a system");
         let n = system.n();
         let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..n).expect("a system");

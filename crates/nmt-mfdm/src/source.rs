@@ -1,11 +1,12 @@
 //! The right side of −∇²u = s, and its integrals with the hats.
 
+use crate::element::Element;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
 use crate::true_edges::of_triangle;
 use crate::weak::places;
-use nmt_geom::{NodeId, Point, TriId};
+use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, barycentric};
 
 /// s of −∇²u = s.
@@ -32,7 +33,7 @@ impl Source<'_> {
         }
     }
 
-    /// ∫s·v + ∫q·v of the hat v of a node, over the triangles around it.
+    /// ∫s·v + ∫q·v of the hat v of a node, over the elements around it.
     ///
     /// # Errors
     /// As [`Self::at`].
@@ -42,23 +43,22 @@ impl Source<'_> {
         rule: &Rule,
         fluxes: &Fluxes,
         node: NodeId,
-        around: &[TriId],
+        around: &[Element],
     ) -> Result<f64, MfdmError> {
         let mut sum = 0.0;
-        for &t in around {
-            let corners = mesh.corners(t);
-            let corner = mesh.tri_nodes()[t.index()].iter().position(|n| *n == node).unwrap_or(0);
+        for element in around {
+            let corner = element.nodes.iter().position(|n| *n == node).unwrap_or(0);
             match self {
                 // ∫v is a third of the triangle's area.
-                Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * mesh.area(t) / 3.0,
+                Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * element.area / 3.0,
                 _ => {
-                    for (p, weight) in places(mesh, rule, fluxes, t) {
-                        sum += weight * self.at(p)? * barycentric(corners, p)[corner];
+                    for (p, weight) in places(mesh, rule, fluxes, element.triangle) {
+                        sum += weight * self.at(p)? * barycentric(element.corners, p)[corner];
                     }
                 }
             }
-            for sample in of_triangle(&fluxes.edges, t) {
-                sum += sample.weight * barycentric(corners, sample.at)[corner];
+            for sample in of_triangle(&fluxes.edges, element.triangle) {
+                sum += sample.weight * barycentric(element.corners, sample.at)[corner];
             }
         }
         Ok(sum)

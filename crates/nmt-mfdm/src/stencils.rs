@@ -216,6 +216,11 @@ impl<'a> Stencil<'a> {
         &self.rows[k * self.nodes.len()..(k + 1) * self.nodes.len()]
     }
 
+    /// All rows, from [`Self::first_row`] on.
+    pub(crate) fn rows(&self) -> &'a [f64] {
+        self.rows
+    }
+
     /// 1 where the polynomial meets the centre's value exactly, so that there is no row for it; 0 where it smooths.
     pub fn first_row(&self) -> usize {
         self.first_row

@@ -145,6 +145,14 @@ impl SplitRow {
         Self { unknowns, holes, known: self.known * factor, is_beside: self.is_beside }
     }
 
+    /// Makes it 0, with the room it has.
+    fn clear(&mut self) {
+        let (mut unknowns, mut holes) = (std::mem::take(&mut self.unknowns), std::mem::take(&mut self.holes));
+        unknowns.clear();
+        holes.clear();
+        *self = Self { unknowns, holes, ..Self::default() };
+    }
+
     /// Adds `coefficient` times the value of a node of that role; unknowns must come in ascending order.
     #[inline]
     pub fn add(&mut self, role: Role, coefficient: f64) {
@@ -168,43 +176,57 @@ pub(crate) struct Equation {
 }
 
 /// Sums coefficients by node, to be used again for the next row; O(entries).
+///
+/// Nodes near each other have numbers near each other: which are touched is a bit each, and those bits lie in few words.
 #[derive(Clone, Debug)]
 pub(crate) struct RowSum {
-    sums: Vec<f64>, // shape (n_nodes,), zero where untouched
-    touched: Vec<u32>,
-    is_touched: Vec<bool>,
+    sums: Vec<f64>,  // shape (n_nodes,), zero where untouched
+    bits: Vec<u64>,  // of the nodes touched
+    words: Vec<u32>, // of `bits` that are not zero
 }
 
 impl RowSum {
     pub fn new(n_nodes: usize) -> Self {
-        Self { sums: vec![0.0; n_nodes], touched: Vec::new(), is_touched: vec![false; n_nodes] }
+        let n_words = n_nodes.div_ceil(u64::BITS as usize);
+        Self { sums: vec![0.0; n_nodes], bits: vec![0; n_words], words: Vec::new() }
     }
 
     /// Adds `coefficient` times the value of `node`.
     #[inline]
     pub fn add(&mut self, node: NodeId, coefficient: f64) {
-        let k = node.index();
-        if !self.is_touched[k] {
-            self.is_touched[k] = true;
-            self.touched.push(node.0);
+        let word = node.0 / u64::BITS;
+        let bits = &mut self.bits[word as usize];
+        if *bits == 0 {
+            self.words.push(word);
         }
-        self.sums[k] += coefficient;
+        *bits |= 1 << (node.0 % u64::BITS);
+        self.sums[node.index()] += coefficient;
     }
 
     /// The row so far, by role; begins the next one.
     pub fn take(&mut self, roles: &Roles) -> SplitRow {
         let mut row = SplitRow::default();
-        self.drain(|node, sum| row.add(roles.of(node), sum));
+        self.take_to(roles, &mut row);
         row
     }
 
+    /// As [`Self::take`], in the place of what is in `row`.
+    pub fn take_to(&mut self, roles: &Roles, row: &mut SplitRow) {
+        row.clear();
+        self.drain(|node, sum| row.add(roles.of(node), sum));
+    }
+
     /// Hands over (node, sum) by ascending number; begins the next row.
+    #[inline]
     pub fn drain(&mut self, mut to: impl FnMut(NodeId, f64)) {
-        self.touched.sort_unstable();
-        for node in self.touched.drain(..) {
-            let sum = std::mem::take(&mut self.sums[node as usize]);
-            self.is_touched[node as usize] = false;
-            to(NodeId(node), sum);
+        self.words.sort_unstable();
+        for word in self.words.drain(..) {
+            let mut bits = std::mem::take(&mut self.bits[word as usize]);
+            while bits != 0 {
+                let node = NodeId(word * u64::BITS + bits.trailing_zeros());
+                bits &= bits - 1;
+                to(node, std::mem::take(&mut self.sums[node.index()]));
+            }
         }
     }
 }

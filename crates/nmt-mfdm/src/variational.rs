@@ -1,18 +1,24 @@
 //! The variational formulation with linear hats as test functions, and linear finite elements; paper, eq. (18) \[D13\].
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
-use crate::blend::barycentric_gradients;
+use crate::element::Element;
 use crate::error::MfdmError;
 use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
+use nmt_geom::point::dot;
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
     LinearSystem::of_pieces(setting.frame.roles, |piece| {
-        let mut maker = EquationMaker::new(setting, weak);
-        LinearSystem::of(setting.frame.roles, piece.map(|k| maker.of(k)))
+        let (mut maker, mut equation) = (EquationMaker::new(setting, weak), Equation::default());
+        let mut system = LinearSystem::new(setting.frame.roles.n_unknowns, setting.frame.roles.n_holes);
+        for k in piece {
+            maker.make(k, &mut equation)?;
+            system.push(&equation);
+        }
+        Ok(system)
     })
 }
 
@@ -22,12 +28,13 @@ pub(crate) struct EquationMaker<'a> {
     weak: &'a WeakForm<'a>,
     sum: RowSum,
     gathered: Gathered,
+    around: Vec<Element>, // the node under way
 }
 
 impl<'a> EquationMaker<'a> {
     pub fn new(setting: &'a Setting<'a>, weak: &'a WeakForm<'a>) -> Self {
         let sum = RowSum::new(setting.frame.mesh.cloud().n_nodes());
-        Self { setting, weak, sum, gathered: Gathered::default() }
+        Self { setting, weak, sum, gathered: Gathered::default(), around: Vec::new() }
     }
 
     /// The equation of unknown `k`.
@@ -35,30 +42,35 @@ impl<'a> EquationMaker<'a> {
     /// # Errors
     /// [`MfdmError::Datum`] where the source is not finite.
     pub fn of(&mut self, k: usize) -> Result<Equation, MfdmError> {
+        let mut equation = Equation::default();
+        self.make(k, &mut equation)?;
+        Ok(equation)
+    }
+
+    /// As [`Self::of`], in the place of what is in `equation`.
+    fn make(&mut self, k: usize, equation: &mut Equation) -> Result<(), MfdmError> {
         let Frame { mesh, roles, node_tris, source, fluxes, source_rule } = self.setting.frame;
         let node = roles.node(k);
-        if let Some(equation) = dirichlet_row(self.setting, node, &mut self.sum)? {
-            return Ok(equation);
+        if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
+            *equation = of_value;
+            return Ok(());
         }
-        let around = node_tris.around(node);
-        let slopes = around.iter().map(|&t| (t, hat_slope(mesh, t, node)));
+        self.around.clear();
+        self.around.extend(node_tris.around(node).iter().map(|&t| Element::new(mesh, t)));
+        let slopes = self.around.iter().map(|element| (element, element.hat_slope(node)));
         self.weak.add(slopes, &mut self.gathered, &mut self.sum);
-        let rhs = source.with_hat(mesh, source_rule, fluxes, node, around)?;
-        Ok(Equation { row: self.sum.take(roles), rhs })
+        self.sum.take_to(roles, &mut equation.row);
+        equation.rhs = source.with_hat(mesh, source_rule, fluxes, node, &self.around)?;
+        Ok(())
     }
 }
 
 /// ∫|∇v|² of a node's hat.
 pub(crate) fn hat_energy(mesh: &Mesh, node_tris: &NodeTris, node: NodeId) -> f64 {
     let of_triangle = |&t: &TriId| {
-        let slope = hat_slope(mesh, t, node);
-        mesh.area(t) * (slope[0] * slope[0] + slope[1] * slope[1])
+        let element = Element::new(mesh, t);
+        let slope = element.hat_slope(node);
+        element.area * dot(slope, slope)
     };
     node_tris.around(node).iter().map(of_triangle).sum()
-}
-
-/// Gradient on `triangle` of the hat of one of its nodes.
-fn hat_slope(mesh: &Mesh, triangle: TriId, node: NodeId) -> [f64; 2] {
-    let corner = mesh.tri_nodes()[triangle.index()].iter().position(|n| *n == node);
-    corner.map_or([0.0; 2], |corner| barycentric_gradients(mesh.corners(triangle))[corner])
 }

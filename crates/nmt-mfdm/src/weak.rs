@@ -2,8 +2,8 @@
 //!
 //! The left side of the variational form (v a hat) and of the circulation on holes (v one around a hole) alike.
 
-use crate::basis::{MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
-use crate::blend::barycentric_gradients;
+use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
+use crate::element::{CornerIntegrals, Element};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
@@ -13,17 +13,19 @@ use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::stencils::Stencils;
 use crate::system::RowSum;
 use crate::true_edges::of_triangle;
+use nmt_geom::point::dot;
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, barycentric};
+use std::array::from_fn;
 
-/// What a nodal polynomial contributes by its Taylor coefficients.
+/// What a nodal polynomial contributes by its derivatives at the node.
 type Moments = [f64; MAX_MONOMIALS];
 
 /// Integrates the weak form.
 pub(crate) struct WeakForm<'a> {
-    mesh: &'a Mesh,
     fluxes: &'a Fluxes,
     rule: &'a Rule,
+    degree: usize, // to which the rule is exact
     trial: TrialGradients<'a>,
 }
 
@@ -43,29 +45,34 @@ struct Integrals {
     by_y: Vec<f64>,
 }
 
-/// Room for one row, to be used again for the next; and the integrals over triangles that the last rows needed.
-///
-/// Each triangle enters three rows, and in the order of the nodes these are not far from each other. Whoever changes the
-/// stencils begins anew.
+/// Room for one row, to be used again for the next.
 #[derive(Default)]
 pub(crate) struct Gathered {
-    nodes: Vec<NodeId>,
+    nodes: Vec<NodeId>, // whose polynomials enter
     moments: Vec<Moments>,
-    of_star: Vec<f64>,        // of one of these nodes
-    kept: Vec<TriId>,         // the triangle in each slot
-    integrals: Vec<[f64; 2]>, // slot after slot, corner after corner, ∫∇(λ_a φ_m) of every monomial
+    of_star: Vec<f64>, // of one of these nodes
 }
 
-/// Triangles whose integrals are kept, at most: some rows of a cloud of 10⁶ nodes.
-const KEPT: usize = 1 << 14;
+impl Gathered {
+    /// The moments of a node, 0 at first.
+    fn of(&mut self, node: NodeId) -> &mut Moments {
+        // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
+        let slot = self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
+            self.nodes.push(node);
+            self.moments.push([0.0; MAX_MONOMIALS]);
+            self.nodes.len() - 1
+        });
+        &mut self.moments[slot]
+    }
+}
 
-/// The triangle of an empty slot.
-const EMPTY: TriId = TriId(u32::MAX);
+/// Nodes in the usual star of order 2: its loops are of known length.
+const USUAL: usize = 9;
 
 impl<'a> WeakForm<'a> {
     /// The blend of the polynomials of `stencils`.
-    pub fn blended(mesh: &'a Mesh, stencils: &'a Stencils, fluxes: &'a Fluxes, rule: &'a Rule) -> Self {
-        Self { mesh, fluxes, rule, trial: TrialGradients::Blended(stencils) }
+    pub fn blended(stencils: &'a Stencils, fluxes: &'a Fluxes, rule: &'a Rule) -> Self {
+        Self { fluxes, rule, degree: rule.degree(), trial: TrialGradients::Blended(stencils) }
     }
 
     /// The trial functions of `space`.
@@ -75,7 +82,7 @@ impl<'a> WeakForm<'a> {
     pub fn new(space: TrialSpace<'a>, fluxes: &'a Fluxes, rule: &'a Rule) -> Result<Self, MfdmError> {
         let mesh = space.mesh;
         if space.kind == Trial::Blended {
-            return Ok(Self::blended(mesh, space.stencils, fluxes, rule));
+            return Ok(Self::blended(space.stencils, fluxes, rule));
         }
         let pieces = map_chunks(0..mesh.n_triangles(), |piece| {
             let (mut finder, mut shapes) = (ShapeFinder::new(space), Shapes::default());
@@ -101,17 +108,28 @@ impl<'a> WeakForm<'a> {
         });
         let integrals = pieces.into_iter().collect::<Result<Vec<_>, MfdmError>>()?;
         let trial = TrialGradients::Integrated(integrals.into_iter().flatten().collect());
-        Ok(Self { mesh, fluxes, rule, trial })
+        Ok(Self { fluxes, rule, degree: rule.degree(), trial })
     }
 
-    /// Adds ∫∇F·∇v for the v whose constant gradient is `slope(t, k)` of the triangles given: the row of coefficients of
-    /// the nodal values.
-    pub fn add(&self, triangles: impl Iterator<Item = (TriId, [f64; 2])>, gathered: &mut Gathered, sum: &mut RowSum) {
+    /// Adds ∫∇F·∇v for the v whose constant gradient is told with each element: the row of coefficients of the nodal values.
+    pub fn add<'e>(
+        &self,
+        elements: impl Iterator<Item = (&'e Element, [f64; 2])>,
+        gathered: &mut Gathered,
+        sum: &mut RowSum,
+    ) {
         match &self.trial {
-            TrialGradients::Blended(stencils) => self.add_blended(stencils, triangles, gathered, sum),
+            TrialGradients::Blended(stencils) => match stencils.order() {
+                // Loops of known length take half the time.
+                0 => self.add_blended::<0>(stencils, elements, gathered, sum),
+                1 => self.add_blended::<1>(stencils, elements, gathered, sum),
+                2 => self.add_blended::<2>(stencils, elements, gathered, sum),
+                3 => self.add_blended::<3>(stencils, elements, gathered, sum),
+                _ => self.add_blended::<MAX_ORDER>(stencils, elements, gathered, sum),
+            },
             TrialGradients::Integrated(integrals) => {
-                for (triangle, slope) in triangles {
-                    let Integrals { nodes, by_x, by_y } = &integrals[triangle.index()];
+                for (element, slope) in elements {
+                    let Integrals { nodes, by_x, by_y } = &integrals[element.triangle.index()];
                     for (k, &node) in nodes.iter().enumerate() {
                         sum.add(node, slope[0] * by_x[k] + slope[1] * by_y[k]);
                     }
@@ -120,39 +138,32 @@ impl<'a> WeakForm<'a> {
         }
     }
 
-    fn add_blended(
+    fn add_blended<'e, const P: usize>(
         &self,
         stencils: &Stencils,
-        triangles: impl Iterator<Item = (TriId, [f64; 2])>,
+        elements: impl Iterator<Item = (&'e Element, [f64; 2])>,
         gathered: &mut Gathered,
         sum: &mut RowSum,
     ) {
         gathered.nodes.clear();
         gathered.moments.clear();
-        let n = n_monomials(stencils.order());
-        if gathered.kept.is_empty() {
-            let slots = KEPT.min(self.mesh.n_triangles());
-            gathered.kept = vec![EMPTY; slots];
-            gathered.integrals = vec![[0.0; 2]; 3 * n * slots];
-        }
-        for (triangle, slope) in triangles {
-            let slot = triangle.index() % gathered.kept.len();
-            let integrals = &mut gathered.integrals[3 * n * slot..3 * n * (slot + 1)];
-            if gathered.kept[slot] != triangle {
-                gathered.kept[slot] = triangle;
-                let corners = integrals.chunks_exact_mut(n).enumerate();
-                corners.for_each(|(corner, own)| self.integrate(stencils, triangle, corner, own));
-            }
-            for (corner, own) in integrals.chunks_exact(n).enumerate() {
-                let node = self.mesh.tri_nodes()[triangle.index()][corner];
-                // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
-                let slot = gathered.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
-                    gathered.nodes.push(node);
-                    gathered.moments.push([0.0; MAX_MONOMIALS]);
-                    gathered.nodes.len() - 1
-                });
-                let moments = gathered.moments[slot].iter_mut().zip(own);
-                moments.for_each(|(moment, by)| *moment += slope[0] * by[0] + slope[1] * by[1]);
+        let is_exact = self.degree >= P;
+        for (element, slope) in elements {
+            let slivers = of_triangle(&self.fluxes.slivers, element.triangle);
+            for a in 0..3 {
+                let along = dot(slope, element.slopes[a]);
+                let moments = gathered.of(element.nodes[a]);
+                if is_exact {
+                    CornerIntegrals::<P>::of_triangle(element, a).add_along(slope, along, moments);
+                } else {
+                    let points = self.rule.points.iter().zip(&self.rule.weights);
+                    let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
+                    CornerIntegrals::<P>::of_places(element, a, points).add_along(slope, along, moments);
+                }
+                if !slivers.is_empty() {
+                    let places = slivers.iter().map(|s| (barycentric(element.corners, s.at), s.weight));
+                    CornerIntegrals::<P>::of_places(element, a, places).add_along(slope, along, moments);
+                }
             }
         }
         for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
@@ -160,69 +171,38 @@ impl<'a> WeakForm<'a> {
                 sum.add(node, moments[0]);
             }
             let stencil = stencils.of(node);
+            // Rows are those of scaled coordinates.
+            let scale = stencils.metric().stretch().map(|stretch| stretch / stencil.radius);
+            let mut powers = [1.0; MAX_MONOMIALS];
+            for degree in 1..=P {
+                (0..degree).for_each(|b| powers[row(degree - b, b)] = scale[0] * powers[row(degree - 1 - b, b)]);
+                powers[row(0, degree)] = scale[1] * powers[row(0, degree - 1)];
+            }
+            let factors: [f64; MAX_MONOMIALS] = from_fn(|m| moments[m] * powers[m]);
+            let factors = &factors[stencil.first_row()..n_monomials(P)];
+            if let Ok(nodes) = <&[NodeId; USUAL]>::try_from(stencil.nodes) {
+                let of_star = combined::<USUAL>(stencil.rows(), factors);
+                (0..USUAL).for_each(|i| sum.add(nodes[i], of_star[i]));
+                continue;
+            }
             let of_star = &mut gathered.of_star;
             of_star.clear();
             of_star.resize(stencil.nodes.len(), 0.0);
-            for (m, moment) in moments.iter().enumerate().take(n).skip(stencil.first_row()) {
-                of_star.iter_mut().zip(stencil.row(m)).for_each(|(total, coefficient)| *total += moment * coefficient);
+            for (m, factor) in (stencil.first_row()..).zip(factors) {
+                of_star.iter_mut().zip(stencil.row(m)).for_each(|(total, coefficient)| *total += factor * coefficient);
             }
             stencil.nodes.iter().zip(of_star.iter()).for_each(|(&other, &total)| sum.add(other, total));
         }
     }
+}
 
-    /// ∫∇(λ_a φ_m) over the triangle, and the slivers at its segments, for every monomial φ_m of corner a.
-    fn integrate(&self, stencils: &Stencils, triangle: TriId, corner: usize, integrals: &mut [[f64; 2]]) {
-        // Loops of known length take half the time.
-        match stencils.order() {
-            0 => self.integrate_order::<0>(stencils, triangle, corner, integrals),
-            1 => self.integrate_order::<1>(stencils, triangle, corner, integrals),
-            2 => self.integrate_order::<2>(stencils, triangle, corner, integrals),
-            3 => self.integrate_order::<3>(stencils, triangle, corner, integrals),
-            _ => self.integrate_order::<MAX_ORDER>(stencils, triangle, corner, integrals),
-        }
+/// The sum of rows of `N` coefficients, each times its factor.
+fn combined<const N: usize>(rows: &[f64], factors: &[f64]) -> [f64; N] {
+    let mut total = [0.0; N];
+    for (row, factor) in rows.as_chunks::<N>().0.iter().zip(factors) {
+        (0..N).for_each(|i| total[i] += factor * row[i]);
     }
-
-    #[inline(always)]
-    fn integrate_order<const P: usize>(
-        &self,
-        stencils: &Stencils,
-        triangle: TriId,
-        corner: usize,
-        integrals: &mut [[f64; 2]],
-    ) {
-        let corners = self.mesh.corners(triangle);
-        let node = self.mesh.tri_nodes()[triangle.index()][corner];
-        let radius = stencils.of(node).radius;
-        let [s_x, s_y] = stencils.metric().stretch().map(|stretch| stretch / radius);
-        let area = self.mesh.area(triangle);
-        let lambda_slope = barycentric_gradients(corners)[corner];
-        integrals.fill([0.0; 2]);
-        let mut basis = [0.0; MAX_MONOMIALS];
-        let mut add = |lambda: &[f64; 3], weight: f64| {
-            let offset = |d: usize| (0..3).map(|a| lambda[a] * (corners[a][d] - corners[corner][d])).sum::<f64>();
-            monomials([offset(0) * s_x, offset(1) * s_y], P, &mut basis);
-            let value_part = lambda_slope.map(|slope| weight * slope);
-            let slope_part = [weight * lambda[corner] * s_x, weight * lambda[corner] * s_y];
-            for degree in 0..=P {
-                for b in 0..=degree {
-                    let a = degree - b;
-                    let by_x = if a > 0 { basis[row(a - 1, b)] } else { 0.0 };
-                    let by_y = if b > 0 { basis[row(a, b - 1)] } else { 0.0 };
-                    let (value, sum) = (basis[row(a, b)], &mut integrals[row(a, b)]);
-                    sum[0] += value_part[0] * value + slope_part[0] * by_x;
-                    sum[1] += value_part[1] * value + slope_part[1] * by_y;
-                }
-            }
-        };
-        for (lambda, weight) in self.rule.points.iter().zip(&self.rule.weights) {
-            add(lambda, weight * area);
-        }
-        if !self.fluxes.slivers.is_empty() {
-            for sample in of_triangle(&self.fluxes.slivers, triangle) {
-                add(&barycentric(corners, sample.at), sample.weight);
-            }
-        }
-    }
+    total
 }
 
 /// The Gauss points of a triangle and of the slivers at its segments, with their weights (areas).
