@@ -9,7 +9,7 @@ use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::gauss::Rule;
-use crate::mend::{ROUNDS, nodes_around, soft_nodes, touched};
+use crate::mend::{ROUNDS, is_soft, nodes_around, soft_nodes, touched};
 use crate::parallel::map_pieces;
 use crate::problem::Formulation;
 use crate::repair::StarOutcome;
@@ -98,7 +98,8 @@ fn assemble_by(
             let anew = unknowns.iter().copied().zip(making.equations(unknowns)?);
             system.replace(&anew.collect::<Vec<_>>());
         }
-        soft = soft_nodes(frame, &system, touched.into_iter());
+        let still = touched.into_iter().filter(|&k| is_soft(frame, k, system.matrix.diagonal(k)));
+        soft = still.map(|k| frame.roles.node(k)).collect();
     }
     let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
     let stencils = making.stencils(of_holes)?;

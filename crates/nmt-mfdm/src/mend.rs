@@ -10,6 +10,7 @@
 use crate::assembly::{Frame, Setting};
 use crate::error::MfdmError;
 use crate::gauss::Rule;
+use crate::parallel::map_chunks;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
 use crate::system::{LinearSystem, Role};
@@ -39,7 +40,7 @@ pub(crate) fn mend(
     system: &mut LinearSystem,
     among: Range<usize>,
 ) -> Result<BTreeMap<NodeId, usize>, MfdmError> {
-    let mut sizes = BTreeMap::new();
+    let (mut sizes, mut anew) = (BTreeMap::new(), BTreeMap::new());
     let mut soft = soft_nodes(frame, system, among.clone());
     for _ in 0..ROUNDS {
         if soft.is_empty() {
@@ -52,18 +53,32 @@ pub(crate) fn mend(
         let weak = WeakForm::blended(stencils, frame.fluxes, rule);
         let mut maker = EquationMaker::new(&setting, &weak);
         let touched = touched(frame, &soft);
-        let anew = touched.iter().map(|&k| Ok((k, maker.of(k)?)));
-        system.replace(&anew.collect::<Result<Vec<_>, MfdmError>>()?);
-        soft = soft_nodes(frame, system, touched.into_iter().filter(|k| among.contains(k)));
+        soft.clear();
+        for &k in &touched {
+            let equation = maker.of(k)?;
+            if among.contains(&k) && is_soft(frame, k, equation.row.of_unknown(k)) {
+                soft.push(frame.roles.node(k));
+            }
+            anew.insert(k, equation);
+        }
     }
+    // At once: what stays is moved.
+    system.replace(&anew.into_iter().collect::<Vec<_>>());
     Ok(sizes)
 }
 
-/// The nodes among `unknowns` (ascending) whose own coefficient is below [`SOFT`] of what linear elements have.
-pub(crate) fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
-    let is_soft =
-        |k: &usize| system.matrix.diagonal(*k) < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(*k));
-    unknowns.filter(is_soft).map(|k| frame.roles.node(k)).collect()
+/// The nodes among `unknowns` whose own coefficient is below [`SOFT`] of what linear elements have, ascending.
+pub(crate) fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: Range<usize>) -> Vec<NodeId> {
+    let soft = |piece: Range<usize>| {
+        let soft = piece.filter(|&k| is_soft(frame, k, system.matrix.diagonal(k)));
+        soft.map(|k| frame.roles.node(k)).collect::<Vec<_>>()
+    };
+    map_chunks(unknowns, soft).into_iter().flatten().collect()
+}
+
+/// Whether an equation's own coefficient is below [`SOFT`] of what linear elements have.
+pub(crate) fn is_soft(frame: Frame, unknown: usize, own: f64) -> bool {
+    own < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(unknown))
 }
 
 /// Nodes, ascending, whose polynomials enter the equations of `unknowns`: their own and those of the nodes around.

@@ -19,6 +19,7 @@
 use crate::assembly::Frame;
 use crate::mend::SOFT;
 use crate::mwls::{MAX_CONDITION, Mwls};
+use crate::parallel::map_chunks;
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
 use crate::system::{LinearSystem, Role, Roles, SplitRow};
@@ -103,31 +104,37 @@ pub(crate) fn holds(
 /// The nodes that are hardly held, ascending.
 fn loose_nodes(frame: Frame, system: &LinearSystem, among: Range<usize>) -> Vec<Loose> {
     let energy = |k: usize| hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k));
-    let matrix = &system.matrix;
-    let mut loose: Vec<Loose> = Vec::new();
-    for k in among {
-        let (own, own_energy) = (matrix.diagonal(k), energy(k));
-        if own < SOFT * own_energy {
-            loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });
+    let (matrix, diagonal) = (&system.matrix, system.matrix.diagonals());
+    let pieces = map_chunks(among, |piece| {
+        let mut loose: Vec<Loose> = Vec::new();
+        for k in piece {
+            let (own, own_energy) = (diagonal[k], energy(k));
+            if own < SOFT * own_energy {
+                loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });
+            }
+            for (j, there) in matrix.row(k).entries() {
+                // The two rows may differ much, but two nodes could cancel only where the larger of the coefficients beside
+                // the diagonal is large: from its row the pair is seen. A negative coefficient of its own makes a node loose
+                // without a twin.
+                let other = diagonal[j];
+                if 2.0 * there * there < own * other || own.min(other) <= 0.0 || j == k {
+                    continue;
+                }
+                let back = matrix.entry(j, k as u32);
+                if 2.0 * there * back < own * other {
+                    continue;
+                }
+                let (other_energy, determinant) = (energy(j), own * other - there * back);
+                if determinant < LOOSE_PAIR * own_energy * other_energy {
+                    let lacking = (-least_eigenvalue(own + other, determinant)).max(0.0);
+                    loose.push(Loose { unknown: k, twin: Some(j), energy: own_energy, lacking });
+                    loose.push(Loose { unknown: j, twin: Some(k), energy: other_energy, lacking });
+                }
+            }
         }
-        for (j, there) in matrix.row(k).entries() {
-            // Only of the first of two nodes, and only where they could cancel at all: the two rows may differ much. A
-            // negative coefficient of its own makes a node loose without a twin.
-            if j <= k {
-                continue;
-            }
-            let (other, back) = (matrix.diagonal(j), matrix.entry(j, k as u32));
-            if own.min(other) <= 0.0 || 2.0 * there * back < own * other {
-                continue;
-            }
-            let (other_energy, determinant) = (energy(j), own * other - there * back);
-            if determinant < LOOSE_PAIR * own_energy * other_energy {
-                let lacking = (-least_eigenvalue(own + other, determinant)).max(0.0);
-                loose.push(Loose { unknown: k, twin: Some(j), energy: own_energy, lacking });
-                loose.push(Loose { unknown: j, twin: Some(k), energy: other_energy, lacking });
-            }
-        }
-    }
+        loose
+    });
+    let mut loose: Vec<Loose> = pieces.into_iter().flatten().collect();
     // One prediction each; that of a pair, which leaves more out.
     loose.sort_by_key(|node| (node.unknown, node.twin.is_none(), node.twin));
     loose.dedup_by_key(|node| node.unknown);

@@ -145,6 +145,11 @@ impl SplitRow {
         Self { unknowns, holes, known: self.known * factor, is_beside: self.is_beside }
     }
 
+    /// The coefficient of an unknown.
+    pub fn of_unknown(&self, k: usize) -> f64 {
+        self.unknowns.binary_search_by_key(&(k as u32), |(unknown, _)| *unknown).map_or(0.0, |at| self.unknowns[at].1)
+    }
+
     /// Makes it 0, with the room it has.
     fn clear(&mut self) {
         let (mut unknowns, mut holes) = (std::mem::take(&mut self.unknowns), std::mem::take(&mut self.holes));
@@ -302,6 +307,9 @@ impl LinearSystem {
 
     /// Puts equations in the place of those that have their numbers, which ascend.
     pub fn replace(&mut self, anew: &[(usize, Equation)]) {
+        if anew.is_empty() {
+            return;
+        }
         let numbers: Vec<usize> = anew.iter().map(|(number, _)| *number).collect();
         let rows: Vec<&[(u32, f64)]> = anew.iter().map(|(_, equation)| equation.row.unknowns.as_slice()).collect();
         self.matrix.replace_rows(&numbers, &rows);

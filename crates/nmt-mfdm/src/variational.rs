@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::error::MfdmError;
 use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
-use nmt_geom::point::dot;
+use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 
@@ -65,12 +65,22 @@ impl<'a> EquationMaker<'a> {
     }
 }
 
-/// ∫|∇v|² of a node's hat.
+/// ∫|∇v|² of a node's hat: over a triangle the square of the opposite side over four times the area.
 pub(crate) fn hat_energy(mesh: &Mesh, node_tris: &NodeTris, node: NodeId) -> f64 {
-    let of_triangle = |&t: &TriId| {
-        let element = Element::new(mesh, t);
-        let slope = element.hat_slope(node);
-        element.area * dot(slope, slope)
+    let at = mesh.xy()[node.index()];
+    let of_triangle = |t: &TriId| {
+        let [a, b, c] = mesh.tri_nodes()[t.index()];
+        // Counter-clockwise after the node.
+        let others = if a == node {
+            [b, c]
+        } else if b == node {
+            [c, a]
+        } else {
+            [a, b]
+        };
+        let [s, t] = others.map(|other| sub(mesh.xy()[other.index()], at));
+        let opposite = sub(t, s);
+        dot(opposite, opposite) / (2.0 * cross(s, t))
     };
     node_tris.around(node).iter().map(of_triangle).sum()
 }

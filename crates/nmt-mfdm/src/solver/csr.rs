@@ -211,34 +211,45 @@ impl Csr {
         self.columns.iter().zip(&mut self.values).for_each(|(column, value)| *value *= factors[*column as usize]);
     }
 
+    /// Diagonal, shape (n_rows,).
+    pub fn diagonals(&self) -> Vec<f64> {
+        let mut diagonal = vec![0.0; self.n_rows()];
+        fill_pieces(&mut diagonal, ROWS, |first, out| {
+            out.iter_mut().enumerate().for_each(|(k, value)| *value = self.diagonal(first + k));
+        });
+        diagonal
+    }
+
     /// Puts `rows` in the place of those that have their numbers, which ascend; within the matrix, since two of it would be
     /// the most that a solution holds at a time.
     pub fn replace_rows(&mut self, numbers: &[usize], rows: &[&[(u32, f64)]]) {
+        let n_entries = self.n_entries();
         let mut runs = Vec::with_capacity(numbers.len() + 1); // of entries that stay
-        let mut first = 0;
-        for &number in numbers {
+        let mut places = Vec::with_capacity(numbers.len() + 1); // where they go
+        let (mut first, mut place) = (0, 0);
+        for (&number, row) in numbers.iter().zip(rows) {
             runs.push(self.starts[first]..self.starts[number]);
+            places.push(place);
+            place += self.starts[number] - self.starts[first] + row.len();
             first = number + 1;
         }
-        runs.push(self.starts[first]..self.n_entries());
-        // What stays moves to the front, then, the last first, behind what is new before it.
-        let mut kept = 0;
-        for run in &runs {
-            self.move_entries(run.clone(), kept);
-            kept += run.len();
-        }
-        let mut end = kept + rows.iter().map(|row| row.len()).sum::<usize>();
-        self.columns.resize(end, 0);
-        self.values.resize(end, 0.0);
-        for (k, run) in runs.iter().enumerate().rev() {
-            (kept, end) = (kept - run.len(), end - run.len());
-            self.move_entries(kept..kept + run.len(), end);
-            let Some(row) = k.checked_sub(1).map(|k| rows[k]) else { continue };
-            end -= row.len();
-            for (slot, &(column, value)) in (end..).zip(row) {
+        runs.push(self.starts[first]..n_entries);
+        places.push(place);
+        let end = place + n_entries - self.starts[first];
+        self.columns.resize(end.max(n_entries), 0);
+        self.values.resize(end.max(n_entries), 0.0);
+        // Runs keep their order, so that what moves to the front, the first of them first, only covers what has moved, and
+        // what moves to the back, the last first, too.
+        let moves = || runs.iter().cloned().zip(places.iter().copied());
+        moves().filter(|(run, place)| *place < run.start).for_each(|(run, place)| self.move_entries(run, place));
+        moves().rev().filter(|(run, place)| *place > run.start).for_each(|(run, place)| self.move_entries(run, place));
+        for ((run, place), row) in moves().zip(rows) {
+            for (slot, &(column, value)) in (place + run.len()..).zip(*row) {
                 (self.columns[slot], self.values[slot]) = (column, value);
             }
         }
+        self.columns.truncate(end);
+        self.values.truncate(end);
         let mut anew = numbers.iter().zip(rows).peekable();
         let mut old_start = 0;
         for i in 0..self.n_rows() {
