@@ -44,7 +44,7 @@ pub enum Failure {
     /// A tolerance is not reached; the best solution has been written.
     #[error(
         "subdomain \"{subdomain}\": the tolerance {asked:e} is not reached: the best of its solutions, on {nodes} nodes, has an \
-         estimated error of {reached:.1e}; allow more (--max-nodes), give a larger tolerance, or order = 4"
+         estimated error of {reached:.1e}{why}"
     )]
     Tolerance {
         /// Its name.
@@ -53,8 +53,10 @@ pub enum Failure {
         asked: f64,
         /// What it has come to.
         reached: f64,
-        /// Nodes of the last cloud.
+        /// Nodes of its cloud.
         nodes: usize,
+        /// Why it went no further, and the remedy, after a semicolon.
+        why: String,
     },
     /// An option does not suit the problem.
     #[error("{0}")]

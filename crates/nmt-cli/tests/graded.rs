@@ -114,6 +114,25 @@ fn graded_clouds_are_the_same_to_the_bit_for_one_and_two_threads() {
 }
 
 #[test]
+fn the_growth_of_a_subdomain_is_that_of_a_steep_density_and_of_refinements_without_their_own() {
+    let directory = scratch("growth");
+    let nodes = |keys: &str| {
+        let output = nmt(&["nodes", &l_with(&directory, keys), "--json"], "2");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        json(&output)["subdomains"][0]["nodes"].as_u64().expect("a number")
+    };
+    let point = "refine = [{ point = [1, 1], size = 1e-3 }]";
+    let own = "refine = [{ point = [1, 1], size = 1e-3, growth = 0.1 }]";
+    for keys in ["density = \"max(0.01, 10*(x - 0.3))\"", point] {
+        let of = |growth: &str| nodes(&format!("{keys}\n{growth}"));
+        assert_eq!(of(""), of("growth = 0.3"));
+        assert!(of("growth = 0.1") > of("growth = 0.3") && of("growth = 0.3") > of("growth = 0.5"), "{keys}");
+    }
+    assert_eq!(nodes(own), nodes(&format!("growth = 0.1\n{point}")));
+    assert_eq!(nodes(own), nodes(&format!("growth = 0.4\n{own}")));
+}
+
+#[test]
 fn both_ways_to_a_mesh_take_spacings_of_one_to_ten_thousand() {
     let file = l_with(&scratch("mesh"), "refine = [{ point = [1, 1], size = 1e-5 }, { edge = \"e1\", size = 0.02 }]");
     let triangles = ["constrained", "unconstrained"].map(|method| {

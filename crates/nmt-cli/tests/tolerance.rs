@@ -77,6 +77,7 @@ fn a_tolerance_out_of_reach_ends_with_exit_3_and_the_best_answer() {
     assert!(stderr.contains("the tolerance 1e-9 is not reached") && stderr.contains("--max-nodes"), "{stderr}");
     let stdout = text(&output.stdout);
     assert!(stdout.contains("1e-9 of J, not reached on") && stdout.contains("J by bounds"), "{stdout}");
+    assert!(stdout.contains("the next cloud would have more than 2000 nodes"), "{stdout}");
     assert!(out.join("report.json").exists() && out.join("solution.svg").exists());
 }
 

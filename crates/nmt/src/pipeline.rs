@@ -7,7 +7,7 @@ mod adapt;
 mod estimate;
 mod poisson;
 
-pub use adapt::{Step, to_tolerance};
+pub use adapt::{Step, Stop, to_tolerance};
 pub use estimate::Estimated;
 pub use poisson::{PoissonData, PoissonErrors, PoissonPart, poisson_solutions};
 pub(crate) use poisson::{poisson_on, solve_on};
@@ -128,6 +128,8 @@ pub struct SolvedPart {
     pub estimate: Estimated,
     /// The solutions on the way to a tolerance, this one the best of them; empty where the problem has no tolerance.
     pub history: Vec<Step>,
+    /// Why the tolerance is not met; `None` where it is, or where there is none.
+    pub stop: Option<Stop>,
 }
 
 /// All subdomains solved: what the problem file asks for.
@@ -254,7 +256,7 @@ fn grading(settings: &GradingSettings) -> Grading {
         let formula = density.expression.clone();
         SpacingFunction::new(move |p| formula.eval(&p))
     });
-    Grading { function, refinements: settings.refine.clone(), ..Grading::default() }
+    Grading { function, growth: settings.growth, refinements: settings.refine.clone() }
 }
 
 /// A fault of the cloud in the terms of the file.
@@ -376,7 +378,7 @@ fn solution_of(problem: &Problem, k: usize, part: MeshPart, observer: &mut Obser
     let params = problem.solve.params(subdomain.formulation);
     let (solution, estimate) = estimate::solve_part((k, problem), (&part, &params), observer)
         .map_err(|source: MfdmError| NmtError::Solve { subdomain: part.name.clone(), source })?;
-    Ok(SolvedPart { part, params, solution, estimate, history: Vec::new() })
+    Ok(SolvedPart { part, params, solution, estimate, history: Vec::new(), stop: None })
 }
 
 /// The torsion problem of a subdomain.

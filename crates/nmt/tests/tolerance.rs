@@ -79,6 +79,8 @@ fn a_tolerance_that_cannot_be_reached_leaves_the_best_solution() -> Result<(), N
     let report = Report::of_solutions(&problem, &[best], &[]);
     let tolerance = report.subdomains[0].solution.as_ref().and_then(|s| s.tolerance.as_ref()).expect("its way");
     assert!(!tolerance.reached && tolerance.steps.len() > 1);
+    assert_eq!(tolerance.stop.as_deref().map(|stop| stop.contains("more than 3000 nodes")), Some(true));
+    assert!(once.stop.is_none());
     Ok(())
 }
 

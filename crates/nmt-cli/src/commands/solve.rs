@@ -52,6 +52,7 @@ fn met(tolerance: f64, parts: &[SolvedPart]) -> Result<(), Failure> {
             asked: tolerance,
             reached: step.error,
             nodes: step.nodes,
+            why: part.stop.as_ref().map_or(String::new(), |stop| format!("; {stop}")),
         })
     })
 }

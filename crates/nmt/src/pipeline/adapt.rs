@@ -13,6 +13,7 @@ use nmt_cloud::{DEFAULT_GROWTH, MIN_SPACING_REL, Refinement, Target};
 use nmt_geom::{NodeId, Point};
 use nmt_mfdm::{ErrorEstimate, Formulation};
 use nmt_tri::NodeTris;
+use std::error::Error;
 use std::f64::consts::PI;
 
 /// One solution on the way to a tolerance.
@@ -24,6 +25,39 @@ pub struct Step {
     pub j: f64,
     /// The estimated error of J as a fraction of it; infinite where the cloud is too coarse for an estimate.
     pub error: f64,
+}
+
+/// Why no finer cloud was solved although the tolerance is not met.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Stop {
+    /// It would have more nodes than allowed.
+    #[error(
+        "the next cloud would have more than {most} nodes; allow more (max_nodes, --max-nodes), give a larger tolerance, or order = 4"
+    )]
+    Nodes {
+        /// What is allowed.
+        most: usize,
+    },
+    /// Many have been solved.
+    #[error("{clouds} clouds have been solved; give a larger tolerance, a finer first cloud, or order = 4")]
+    Clouds {
+        /// How many.
+        clouds: usize,
+    },
+    /// It was tried and failed; where there are several subdomains, that of one ends all.
+    #[error("the next cloud failed: {}; give a larger tolerance, or another first cloud", with_causes(.0))]
+    Failed(NmtError),
+}
+
+/// An error and what it comes from, in one line.
+fn with_causes(error: &NmtError) -> String {
+    let mut line = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        line = format!("{line}: {error}");
+        cause = error.source();
+    }
+    line.replace('\n', "; ")
 }
 
 /// Clouds after which it is given up.
@@ -48,9 +82,13 @@ const AIM: f64 = 0.6;
 /// The part of it that all corners together may have.
 const CORNERS: f64 = 0.05;
 
+/// An exponent of a corner this near to a whole number is that number.
+const WHOLE_WITHIN: f64 = 1.0e-9;
+
 /// Solves torsion in all subdomains, each on clouds that are refined until the estimated error of its J is at most
 /// `tolerance`·J, or until that would take more nodes than [`crate::problem::SolveSettings::max_nodes`]: then the best of
-/// them, or of conforming subdomains the last, whose clouds fit together. [`Step::of`] the solution tells.
+/// them, or of conforming subdomains the last, whose clouds fit together. [`Step::of`] the solution tells, and
+/// [`SolvedPart::stop`] why it is not met.
 ///
 /// The first clouds are those of the file; refined ones are never coarser than that spacing.
 ///
@@ -66,22 +104,29 @@ pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) 
     let mut finer = Finer(vec![Vec::new(); n]);
     let mut ways: Vec<Way> = (0..n).map(|_| Way::default()).collect();
     let mut wanted = vec![true; n];
+    let mut stop = Stop::Clouds { clouds: MOST_STEPS };
     for step in 0..MOST_STEPS {
         let round = match round(problem, &finer, &wanted, observer) {
             Ok(round) => round,
             Err(error) if step == 0 => return Err(error),
             // What has been found so far stands, and says that it does not meet the tolerance.
-            Err(_) => break,
+            Err(error) => {
+                stop = Stop::Failed(error);
+                break;
+            }
         };
         for (k, part) in round {
             observer(k, Event::Step(Step::of(&part)));
             ways[k].add(part);
         }
-        for (k, way) in ways.iter().enumerate() {
+        for (k, way) in ways.iter_mut().enumerate() {
             let most = problem.solve.max_nodes;
-            let refined = way.latest.as_ref().and_then(|part| refined(part, tolerance, most));
-            wanted[k] = refined.is_some();
-            refined.into_iter().for_each(|refinements| finer.0[k] = refinements);
+            let next = way.latest.as_ref().map_or(Next::Met, |part| next(part, tolerance, most));
+            wanted[k] = matches!(next, Next::Finer(_));
+            way.is_too_large = matches!(next, Next::TooLarge);
+            if let Next::Finer(refinements) = next {
+                finer.0[k] = refinements;
+            }
         }
         if !wanted.contains(&true) {
             break;
@@ -92,7 +137,12 @@ pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) 
         }
     }
     // Conforming clouds fit together only if they are of one round.
-    let of = |way: Way| if is_conforming { way.newest() } else { way.best() };
+    let of = |way: Way| {
+        let of_own = way.is_too_large.then_some(Stop::Nodes { most: problem.solve.max_nodes });
+        let part = if is_conforming { way.newest() } else { way.best() }?;
+        let is_met = Step::of(&part).error <= tolerance;
+        Some(SolvedPart { stop: (!is_met).then(|| of_own.unwrap_or(stop.clone())), ..part })
+    };
     Ok(ways.into_iter().filter_map(of).collect())
 }
 
@@ -103,6 +153,8 @@ struct Way {
     /// The best before the latest.
     before: Option<SolvedPart>,
     history: Vec<Step>,
+    /// The next cloud would have too many nodes.
+    is_too_large: bool,
 }
 
 impl Way {
@@ -157,12 +209,22 @@ impl Step {
     }
 }
 
-/// What the next cloud shall be refined to; `None` where the tolerance is met, or would take too many nodes.
-fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec<Refinement>> {
+/// What a solution calls for.
+enum Next {
+    /// Nothing: it meets the tolerance.
+    Met,
+    /// A cloud with more nodes than allowed.
+    TooLarge,
+    /// A cloud refined to these.
+    Finer(Vec<Refinement>),
+}
+
+/// What the next cloud shall be.
+fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Next {
     let cloud = solved.part.mesh.cloud();
     let spacing = spacings(solved);
     let (factors, corners) = match solved.estimate.made() {
-        Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return None,
+        Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return Next::Met,
         Some(estimate) => {
             let sought = Sought::new(solved, estimate, tolerance);
             (sought.factors(), sought.corners())
@@ -172,7 +234,7 @@ fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec
     };
     let nodes: f64 = factors.iter().map(|factor| factor.powi(-2)).sum();
     if nodes > most_nodes as f64 {
-        return None;
+        return Next::TooLarge;
     }
     let at = |(node, factor): (usize, f64)| Refinement {
         target: Target::Point(cloud.xy()[node]),
@@ -180,7 +242,7 @@ fn refined(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Option<Vec
         growth: DEFAULT_GROWTH,
     };
     let everywhere = factors.into_iter().enumerate().map(at);
-    Some(everywhere.chain(corners).collect())
+    Next::Finer(everywhere.chain(corners).collect())
 }
 
 /// The spacing at every node of a graded cloud; of one with unequal h_x and h_y that of a square lattice as dense, since graded
@@ -207,6 +269,11 @@ struct Sought<'a> {
     order: f64,
     /// What all triangles shall contribute together.
     all: f64,
+}
+
+/// True of an exponent that is that of a smooth function, up to the rounding of angles between tangent arcs.
+fn is_whole(exponent: f64) -> bool {
+    (exponent - exponent.round()).abs() < WHOLE_WITHIN
 }
 
 impl<'a> Sought<'a> {
@@ -274,7 +341,7 @@ impl<'a> Sought<'a> {
         let limiting: Vec<(Point, f64)> = angles
             .into_iter()
             .map(|(at, angle)| (at, PI / angle))
-            .filter(|(_, exponent)| *exponent < self.order + 1.0 && exponent.fract() != 0.0)
+            .filter(|(_, exponent)| *exponent < self.order + 1.0 && !is_whole(*exponent))
             .collect();
         let each = CORNERS * self.all / limiting.len().max(1) as f64;
         let refinement = |(at, exponent): &(Point, f64)| {

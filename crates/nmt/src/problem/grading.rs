@@ -1,4 +1,4 @@
-//! `density` and `refine` of a subdomain: how the spacing of its cloud varies.
+//! `density`, `refine` and `growth` of a subdomain: how the spacing of its cloud varies.
 
 use super::error::Place;
 use super::formula::{self, Formula};
@@ -18,11 +18,13 @@ pub struct GradingSettings {
     pub density: Option<Formula>,
     /// `refine`: towards points and edges.
     pub refine: Vec<Refinement>,
-    /// The first of the two keys.
+    /// `growth`: of entries of `refine` without one of their own, beside steep parts of `density`, and beside short edges.
+    pub growth: f64,
+    /// The first of `density` and `refine`.
     pub place: Place,
 }
 
-/// Reads both keys; `shapes` are the contour and the holes, as far as they could be read.
+/// Reads the keys; `shapes` are the contour and the holes, as far as they could be read.
 pub(super) fn read(
     reader: &mut Reader<'_>,
     table: &Table<'_, '_>,
@@ -32,7 +34,13 @@ pub(super) fn read(
 ) -> Option<GradingSettings> {
     let item = table.item.as_str();
     let given: Vec<_> = ["density", "refine"].into_iter().filter_map(|key| Some((key, table.get(key)?))).collect();
-    let &(first, value) = given.first()?;
+    let Some(&(first, value)) = given.first() else {
+        if let Some(growth) = table.get("growth") {
+            let remedy = "add `density` or `refine`, or leave it out: the spacing of a uniform cloud does not grow";
+            reader.faults.push(growth.span(), item, "`growth` is given without `density` or `refine`", remedy);
+        }
+        return None;
+    };
     let place = value.span().into();
     let excluded = [
         ("division", division == Division::Chord, "division = \"chord\"", "divide its edges by \"arc\", the default"),
@@ -50,11 +58,25 @@ pub(super) fn read(
     let density = table.get("density");
     let density =
         density.and_then(|value| formula::of_the_plane(reader, item, "density", value, "\"0.01 + 0.1*abs(x - 1)\""));
-    let refine = table.get("refine").map_or(Vec::new(), |value| refinements(reader, item, value, shapes));
-    Some(GradingSettings { density, refine, place })
+    let growth = growth_of(reader, item, table).unwrap_or(DEFAULT_GROWTH);
+    let refine = table.get("refine").map_or(Vec::new(), |value| refinements(reader, item, value, shapes, growth));
+    Some(GradingSettings { density, refine, growth, place })
 }
 
-fn refinements(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &[Option<&Shape>]) -> Vec<Refinement> {
+/// `growth` of a subdomain or of an entry of `refine`, where it is given; one that is refused counts as not given.
+fn growth_of(reader: &mut Reader<'_>, item: &str, table: &Table<'_, '_>) -> Option<f64> {
+    let value = table.get("growth")?;
+    reader.number(item, "growth", value, "0.3", |_, value| growth(value))
+}
+
+/// Reads the entries of `refine`; those without a growth have `growth`.
+fn refinements(
+    reader: &mut Reader<'_>,
+    item: &str,
+    value: &Value<'_>,
+    shapes: &[Option<&Shape>],
+    growth: f64,
+) -> Vec<Refinement> {
     let example = "refine = [{ point = [1, 1], size = 0.001, growth = 0.3 }]";
     let DeValue::Array(entries) = value.get_ref() else {
         return reader
@@ -65,12 +87,19 @@ fn refinements(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &
         let remedy = format!("write, for example, {example}, or leave it out");
         reader.faults.push(value.span(), item, "`refine` is empty", remedy);
     }
-    let entry =
-        |(k, entry): (usize, &Value<'_>)| refinement(reader, &format!("{item}, refine item {}", k + 1), entry, shapes);
+    let entry = |(k, entry): (usize, &Value<'_>)| {
+        refinement(reader, &format!("{item}, refine item {}", k + 1), entry, shapes, growth)
+    };
     entries.iter().enumerate().filter_map(entry).collect()
 }
 
-fn refinement(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &[Option<&Shape>]) -> Option<Refinement> {
+fn refinement(
+    reader: &mut Reader<'_>,
+    item: &str,
+    value: &Value<'_>,
+    shapes: &[Option<&Shape>],
+    growth: f64,
+) -> Option<Refinement> {
     let table = reader.table(item, "", value, "{ point = [1, 1], size = 0.001, growth = 0.3 }")?;
     reader.known_keys(&table, "refine", REFINE_KEYS);
     let target = match (table.get("point"), table.get("edge")) {
@@ -97,12 +126,8 @@ fn refinement(reader: &mut Reader<'_>, item: &str, value: &Value<'_>, shapes: &[
         let least = envelope.map_or(0.0, |envelope| MIN_SPACING_REL * envelope.size());
         reader.accept(item, value, at_least(size, least))
     });
-    let growth = table.get("growth");
-    let growth = match growth {
-        Some(value) => reader.number(item, "growth", value, "0.3", |_, value| self::growth(value)),
-        None => Some(DEFAULT_GROWTH),
-    };
-    Some(Refinement { target: target?, size: size?, growth: growth? })
+    let growth = growth_of(reader, item, &table).unwrap_or(growth);
+    Some(Refinement { target: target?, size: size?, growth })
 }
 
 fn at_least(size: f64, least: f64) -> Result<f64, Refusal> {

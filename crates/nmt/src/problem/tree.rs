@@ -55,6 +55,7 @@ pub(super) const SUBDOMAIN_KEYS: &[&str] = &[
     "conforming",
     "density",
     "refine",
+    "growth",
     "outline",
     "circle",
     "ellipse",

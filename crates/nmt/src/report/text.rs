@@ -192,6 +192,9 @@ impl<U: Fn(i32) -> String> Text<U> {
         };
         let rows: Vec<[String; 4]> = std::iter::once(heads).chain(tolerance.steps.iter().map(row)).collect();
         self.table("    ", &rows);
+        if let Some(stop) = &tolerance.stop {
+            self.row("why no further", stop.clone());
+        }
     }
 
     fn formulation(&mut self, name: &str, order: usize, variational: Option<VariationalReport>, unknowns: usize) {

@@ -10,6 +10,9 @@ pub struct ToleranceReport {
     pub asked: f64,
     /// Whether the estimate of the results meets it.
     pub reached: bool,
+    /// Why no finer cloud was solved, and the remedy; absent where it is reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop: Option<String>,
     /// One entry a cloud, in order; the results are those of the best.
     pub steps: Vec<StepReport>,
 }
@@ -40,6 +43,11 @@ impl ToleranceReport {
             error: Some(step.error).filter(|error| error.is_finite()),
             seconds: 0.0,
         };
-        Some(Self { asked, reached: Step::of(solved).error <= asked, steps: solved.history.iter().map(step).collect() })
+        Some(Self {
+            asked,
+            reached: Step::of(solved).error <= asked,
+            stop: solved.stop.as_ref().map(ToString::to_string),
+            steps: solved.history.iter().map(step).collect(),
+        })
     }
 }
