@@ -4,6 +4,7 @@ use crate::boundary::{BoundaryNodes, boundary_nodes};
 use crate::clearance::Clearance;
 use crate::cloud::{Cloud, CloudParts, Local};
 use crate::error::CloudError;
+use crate::even::even_out;
 use crate::generate::{displace, place_of};
 use crate::section::{ClearanceUnit, CloudParams, Section};
 use crate::sow::{Field, LocalClearance, Sown, sow};
@@ -46,8 +47,14 @@ pub(crate) fn generate_graded(
     let clearance = LocalClearance { edge: params.edge_clearance, node: params.node_clearance, size };
     let moves = params.irregularity * LEVEL_OVER_ASKED * SQRT_2;
     let field = Field { spacing: &spacing, boundary: &boundary, clearance, moves };
-    let Sown { mut xy, asked, exposed, census } = sow(&field)?;
+    let mut sown = sow(&field)?;
+    if params.irregularity == 0.0 {
+        even_out(&mut sown, &field);
+    }
+    let Sown { mut xy, mut asked, exposed, census, .. } = sown;
     let n_boundary = boundary.xy().len();
+    xy.shrink_to_fit();
+    asked.shrink_to_fit();
     if xy.len() == n_boundary {
         let remedy = "ask for a smaller spacing where the section is thin".into();
         return Err(CloudError::NoInterior { remedy });

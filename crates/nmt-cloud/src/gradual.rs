@@ -85,20 +85,32 @@ pub(crate) fn corners_of_child(v: &Nine, k: usize) -> [f64; 4] {
     [v[row][column], v[row][column + 1], v[row + 1][column], v[row + 1][column + 1]]
 }
 
-/// Least and largest of the function in a cell: of the nine values, and by what a parabola through three of them can leave
-/// them, along x and along y together, and as much again; by one level at most, for a function with steps is no parabola.
-pub(crate) fn range(v: &Nine) -> [f64; 2] {
-    let (mut least, mut most, mut bend) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
-    for &value in v.iter().flatten() {
-        least = least.min(value);
-        most = most.max(value);
-    }
+/// The nine values of the child number `k`, linear between those of its parent.
+pub(crate) fn nine_of_child(v: &Nine, k: usize) -> Nine {
+    let [a, b, c, d] = corners_of_child(v, k);
+    let centre = 0.25 * ((a + d) + (b + c));
+    [[a, 0.5 * (a + b), b], [0.5 * (a + c), centre, 0.5 * (b + d)], [c, 0.5 * (c + d), d]]
+}
+
+/// The largest second difference of three values in a line.
+pub(crate) fn bend(v: &Nine) -> f64 {
+    let mut bend = 0.0f64;
     for k in 0..3 {
         bend = bend.max((v[k][0] - 2.0 * v[k][1] + v[k][2]).abs());
         bend = bend.max((v[0][k] - 2.0 * v[1][k] + v[2][k]).abs());
     }
     bend = bend.max((v[0][0] - 2.0 * v[1][1] + v[2][2]).abs());
-    bend = bend.max((v[0][2] - 2.0 * v[1][1] + v[2][0]).abs());
+    bend.max((v[0][2] - 2.0 * v[1][1] + v[2][0]).abs())
+}
+
+/// Least and largest of the function in a cell: of the nine values, and by what a parabola through three of them can leave
+/// them, along x and along y together, and as much again; by one level at most, for a function with steps is no parabola.
+pub(crate) fn range(v: &Nine) -> [f64; 2] {
+    let (mut least, mut most, bend) = (f64::INFINITY, f64::NEG_INFINITY, bend(v));
+    for &value in v.iter().flatten() {
+        least = least.min(value);
+        most = most.max(value);
+    }
     [(least - 0.5 * bend).max(FRAC_1_SQRT_2 * least), (most + 0.5 * bend).min(SQRT_2 * most)]
 }
 

@@ -27,6 +27,7 @@ mod census;
 mod clearance;
 mod cloud;
 mod error;
+mod even;
 mod generate;
 mod graded;
 mod grading;

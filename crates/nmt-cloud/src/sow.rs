@@ -9,7 +9,7 @@ use crate::census::Census;
 use crate::clearance::Clearance;
 use crate::error::CloudError;
 use crate::generate::MAX_GRID_POINTS;
-use crate::gradual::{Nine, corners_of_child, first_depth, is_beyond, nine, range};
+use crate::gradual::{Nine, bend, corners_of_child, first_depth, is_beyond, nine, nine_of_child, range};
 use crate::nested::{Cell, Levels, NestedLattice};
 use crate::sources::Source;
 use crate::spacing::Spacing;
@@ -25,6 +25,25 @@ const REACH_ROOM_REL: f64 = 1.0e-9;
 
 /// Levels are looked for within so many spacings of a site: what lies farther away is no neighbour.
 const NEARBY: f64 = 1.5;
+
+/// Places along x and along y by which the number of nodes is foretold, and how much more room is made.
+const SAMPLES_ACROSS: u32 = 32;
+const EXPECTED_ROOM: f64 = 1.1;
+
+/// The most nodes that a place may foretell, were they all over the envelope.
+const FINEST_SAMPLE: f64 = 1.0e7;
+
+/// With fewer nodes than this the most that there can be is room for.
+const WORTH_EXPECTING: f64 = 1.0e4;
+
+/// A function whose second differences in a cell are at most this part of it is linear there between nine values.
+const LINEAR: f64 = 2.0e-3;
+
+/// A cell between levels is halved so often at once.
+const MOST_HALVINGS: i64 = 2;
+
+/// Nodes within so many spacings of the boundary are beside it.
+const BESIDE: usize = 6;
 
 /// Clearances in units of the local spacing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +72,8 @@ pub(crate) struct Sown {
     pub asked: Vec<f64>,
     /// Numbers of the interior nodes, the first being 0, that a displacement could bring too near to the boundary, ascending.
     pub exposed: Vec<u32>,
+    /// Others within a few spacings of the boundary.
+    pub beside: Vec<u32>,
     pub census: Census,
 }
 
@@ -78,6 +99,9 @@ pub(crate) fn sow(field: &Field) -> Result<Sown, CloudError> {
         Sower::new(field, true).run()?;
     }
     let mut sower = Sower::new(field, false);
+    let room = field.boundary.xy().len() + expected(field);
+    sower.sown.xy.reserve(room);
+    sower.sown.asked.reserve(room);
     sower.sown.xy.extend_from_slice(field.boundary.xy());
     for &p in field.boundary.xy() {
         sower.sown.asked.push(field.spacing.at(p)?);
@@ -86,11 +110,37 @@ pub(crate) fn sow(field: &Field) -> Result<Sown, CloudError> {
     Ok(sower.sown)
 }
 
+/// About how many nodes there will be: ∫dA/h² by some places of the section, for room that need not grow node by node.
+///
+/// What is refined between those places is not seen.
+fn expected(field: &Field) -> usize {
+    let NestedLattice { origin, extent, .. } = *field.spacing.lattice();
+    let [least, most] = [field.spacing.finest(), field.spacing.most()];
+    let area = extent[0] * extent[1];
+    if area < WORTH_EXPECTING * least * least {
+        return (area / (least * least)) as usize;
+    }
+    let index = field.boundary.index();
+    let part = |k: u32| (f64::from(k) + 0.5) / f64::from(SAMPLES_ACROSS);
+    let places = (0..SAMPLES_ACROSS).flat_map(|i| (0..SAMPLES_ACROSS).map(move |j| [part(i), part(j)]));
+    // A place on a point of refinement does not speak for all around it.
+    let believed = (area / FINEST_SAMPLE).sqrt();
+    let density = |t: [f64; 2]| {
+        let p = [origin[0] + t[0] * extent[0], origin[1] + t[1] * extent[1]];
+        let is_inside = index.locate(p) == Location::Inside;
+        if is_inside { field.spacing.at(p).unwrap_or(most).max(believed).powi(-2) } else { 0.0 }
+    };
+    let sum: f64 = places.map(density).sum();
+    (EXPECTED_ROOM * sum * area / f64::from(SAMPLES_ACROSS * SAMPLES_ACROSS)) as usize
+}
+
 /// Where a cell lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     /// In the material, and clear of the boundary with all its nodes, wherever they move.
     Inside,
+    /// Inside, but not known to be farther than [`BESIDE`] spacings from the boundary.
+    Beside,
     /// Not known to be.
     Near,
 }
@@ -127,20 +177,20 @@ impl<'a> Sower<'a> {
 
     fn run(&mut self) -> Result<(), CloudError> {
         let all = 0..self.candidates.len();
-        self.visit(self.lattice.root(), Standing::Near, all, None)
+        self.visit(self.lattice.root(), Standing::Near, all, Given::Nothing)
     }
 
     fn source(&self, number: u32) -> &Source {
         &self.field.spacing.sources()[number as usize]
     }
 
-    /// Sows a cell: `candidates` are the sources that matter in the cell around it, `corners` the function's values.
+    /// Sows a cell: `candidates` are the sources that matter in the cell around it, `given` what is known of the function.
     fn visit(
         &mut self,
         cell: Cell,
         standing: Standing,
         candidates: std::ops::Range<usize>,
-        corners: Option<[f64; 4]>,
+        given: Given,
     ) -> Result<(), CloudError> {
         if is_beyond(self.lattice, cell) {
             return Ok(());
@@ -148,12 +198,16 @@ impl<'a> Sower<'a> {
         let corner = self.lattice.corner(cell);
         let side = self.lattice.spacing().map(|s| s * 0.5f64.powi(cell.depth));
         let centre = along(corner, 0.5, side);
-        let radius = 0.5 * side[0].hypot(side[1]);
+        let radius = 0.5 * diagonal(side);
         let (mut least, mut most) = (self.field.spacing.most(), self.field.spacing.most());
         let waits = cell.depth < self.first_depth; // the function is not looked at yet
         let mut values: Option<Nine> = None;
         if let (Some(function), false) = (self.field.spacing.function(), waits) {
-            let v = nine(self.lattice, cell, corners, function)?;
+            let v = match given {
+                Given::Nothing => nine(self.lattice, cell, None, function)?,
+                Given::Corners(corners) => nine(self.lattice, cell, Some(corners), function)?,
+                Given::Nine(nine) => nine,
+            };
             let [low, high] = range(&v);
             (least, most) = (low, high.min(most));
             values = Some(v);
@@ -183,43 +237,97 @@ impl<'a> Sower<'a> {
     }
 
     fn sow_cell(&mut self, cell: Cell, standing: Standing, known: &Known) -> Result<(), CloudError> {
-        let &Known { corner, side, least, most, waits, ref own, ref values } = known;
-        let standing = match standing {
-            Standing::Inside => standing,
+        let &Known { corner, least, most, waits, ref own, ref values, .. } = known;
+        let Some(standing) = self.standing_in(standing, known) else { return Ok(()) };
+        let [coarsest, finest] = [most, least].map(|h| self.levels.level_of(h));
+        // Twice the depth is the level that the cell is a cell of.
+        let own_level = 2 * i64::from(cell.depth);
+        let even = coarsest == finest && (standing != Standing::Near || own_level + 2 >= coarsest as i64);
+        if !waits && even && coarsest as i64 >= own_level {
+            return self.sow_block(cell, coarsest, standing, known);
+        }
+        if !waits && own_level >= finest as i64 {
+            let from_function = match (self.field.spacing.function(), values) {
+                (Some(function), _) if standing == Standing::Near => function.at(corner)?,
+                (_, Some(v)) => v[0][0],
+                _ => self.field.spacing.most(),
+            };
+            let h = self.asked(corner, own.clone(), from_function);
+            if cell.level_of_corner() <= self.levels.level_of(h) {
+                self.count(1.0)?;
+                self.note_beside(standing, 1, 1);
+                self.sow_site(corner, h, standing)?;
+            }
+            return Ok(());
+        }
+        let is_linear = values.as_ref().is_none_or(|v| bend(v) <= LINEAR * v[1][1]);
+        let is_small = !waits && own_level + 2 * MOST_HALVINGS >= finest as i64;
+        if is_small && is_linear && standing != Standing::Near {
+            return self.sow_sites(cell, [coarsest, finest], standing, known);
+        }
+        for (k, child) in cell.children().into_iter().enumerate() {
+            let given = match values {
+                Some(v) if is_linear => Given::Nine(nine_of_child(v, k)),
+                Some(v) => Given::Corners(corners_of_child(v, k)),
+                None => Given::Nothing,
+            };
+            self.visit(child, standing, own.clone(), given)?;
+        }
+        Ok(())
+    }
+
+    /// Where a cell lies in a larger one that lies so; `None` outside.
+    fn standing_in(&self, standing: Standing, known: &Known) -> Option<Standing> {
+        let &Known { corner, side, most, .. } = known;
+        let (centre, radius) = (along(corner, 0.5, side), 0.5 * diagonal(side));
+        let beside = || {
+            let is_beside = self.index.any_within(centre, radius + BESIDE as f64 * most);
+            if is_beside { Standing::Beside } else { Standing::Inside }
+        };
+        match standing {
+            Standing::Inside => Some(standing),
+            Standing::Beside => Some(beside()),
             Standing::Near => {
                 let clearance = self.field.clearance;
                 let widest = (WIDEST * most).min(self.field.spacing.most());
                 let reach = widest * clearance.edge.max(clearance.node) + most * self.field.moves;
                 let room = SAME_POINT_REL * clearance.size;
-                let (centre, radius) = (along(corner, 0.5, side), 0.5 * side[0].hypot(side[1]));
                 if self.index.any_within(centre, radius + reach * (1.0 + REACH_ROOM_REL) + room) {
-                    standing
-                } else if self.index.locate(centre) == Location::Inside {
-                    Standing::Inside
+                    Some(standing)
                 } else {
-                    return Ok(());
+                    (self.index.locate(centre) == Location::Inside).then(beside)
                 }
             }
-        };
-        let [coarsest, finest] = [most, least].map(|h| self.levels.level_of(h));
-        // Twice the depth is the level that the cell is a cell of.
-        let own_level = 2 * i64::from(cell.depth);
-        let even = coarsest == finest && (standing == Standing::Inside || own_level + 2 >= coarsest as i64);
-        if !waits && even && coarsest as i64 >= own_level {
-            return self.sow_block(cell, coarsest, standing, known);
         }
-        if !waits && own_level >= finest as i64 {
-            let from_function = values.as_ref().map_or(self.field.spacing.most(), |v| v[0][0]);
-            let h = self.asked(corner, own.clone(), from_function);
-            if cell.level_of_corner() <= self.levels.level_of(h) {
-                self.count(1.0)?;
-                self.sow_site(corner, h, standing)?;
+    }
+
+    /// Sows the sites of a small cell between levels, each by the spacing there, in the order of its cells.
+    fn sow_sites(
+        &mut self,
+        cell: Cell,
+        [coarsest, finest]: [usize; 2],
+        standing: Standing,
+        known: &Known,
+    ) -> Result<(), CloudError> {
+        let shift = finest.div_ceil(2) as i32 - cell.depth;
+        let most = self.field.spacing.most();
+        for k in 0..1i64 << (2 * shift) {
+            // Every other digit of the number is one of the column.
+            let place = |k: i64| (0..shift).fold(0, |sum, digit| sum | (k >> digit & 1 << digit));
+            let (i, j) = ((cell.i << shift) + place(k), (cell.j << shift) + place(k >> 1));
+            let site = Cell { depth: cell.depth + shift, i, j };
+            let level = site.level_of_corner();
+            if level > finest {
+                continue;
             }
-            return Ok(());
-        }
-        for (k, child) in cell.children().into_iter().enumerate() {
-            let corners = values.as_ref().map(|v| corners_of_child(v, k));
-            self.visit(child, standing, own.clone(), corners)?;
+            let p = self.lattice.corner(site);
+            let from_function = known.values.as_ref().map_or(most, |v| known.interpolated(&known.row(v, p[1]), p[0]));
+            let h = self.asked(p, known.own.clone(), from_function);
+            if level <= coarsest || level <= self.levels.level_of(h) {
+                self.count(1.0)?;
+                self.note_beside(standing, 1, 1);
+                self.sow_site(p, h, standing)?;
+            }
         }
         Ok(())
     }
@@ -252,6 +360,7 @@ impl<'a> Sower<'a> {
         if self.counts_only {
             return Ok(());
         }
+        self.note_beside(standing, n as usize, if turned { 2 } else { 1 });
         let (i, j) = (cell.i << shift, cell.j << shift);
         for row in 0..n {
             let mut abscissae = std::mem::take(&mut self.abscissae);
@@ -267,26 +376,57 @@ impl<'a> Sower<'a> {
         Ok(())
     }
 
+    /// Notes which of the sites that a block is about to get may be beside the boundary: the outer ones of rows of n sites,
+    /// n such rows or, with the centres of cells, twice as many.
+    fn note_beside(&mut self, standing: Standing, n: usize, rows_a_level: usize) {
+        if standing != Standing::Beside || self.counts_only {
+            return;
+        }
+        let first = self.sown.xy.len() - self.field.boundary.xy().len();
+        let rows = n * rows_a_level;
+        let is_outer = |k: usize, n: usize, by: usize| k < by || k + by >= n;
+        for row in 0..rows {
+            let start = (first + row * n) as u32;
+            let columns = 0..n as u32;
+            if is_outer(row, rows, BESIDE * rows_a_level) {
+                self.sown.beside.extend(columns.map(|k| start + k));
+            } else {
+                let outer = columns.filter(|&k| is_outer(k as usize, n, BESIDE));
+                self.sown.beside.extend(outer.map(|k| start + k));
+            }
+        }
+    }
+
     fn sow_row(&mut self, abscissae: &[f64], y: f64, standing: Standing, known: &Known) -> Result<(), CloudError> {
-        let Known { own, values, .. } = known;
         let most = self.field.spacing.most();
-        if standing == Standing::Inside && own.is_empty() && values.is_none() {
-            self.sown.xy.extend(abscissae.iter().map(|&x| [x, y]));
-            self.sown.asked.resize(self.sown.xy.len(), most);
-            self.sown.census.grid += abscissae.len();
-            self.sown.census.kept += abscissae.len();
+        if standing == Standing::Near {
+            for &x in abscissae {
+                // Clearances are decided by the function itself: the same whichever way cells lie.
+                let from_function = self.field.spacing.function().map_or(Ok(most), |function| function.at([x, y]))?;
+                let h = self.asked([x, y], known.own.clone(), from_function);
+                self.sow_site([x, y], h, standing)?;
+            }
             return Ok(());
         }
-        for &x in abscissae {
-            // Clearances are decided by the function itself: the same whichever way cells lie.
-            let from_function = match (values, self.field.spacing.function(), standing) {
-                (Some(v), _, Standing::Inside) => known.interpolated(v, [x, y]),
-                (_, Some(function), Standing::Near) => function.at([x, y])?,
-                _ => most,
-            };
-            let h = self.asked([x, y], own.clone(), from_function);
-            self.sow_site([x, y], h, standing)?;
+        let Sown { xy, asked, census, .. } = &mut self.sown;
+        let first = asked.len();
+        xy.extend(abscissae.iter().map(|&x| [x, y]));
+        match &known.values {
+            Some(values) => {
+                let row = known.row(values, y);
+                asked.extend(abscissae.iter().map(|&x| known.interpolated(&row, x)));
+            }
+            None => asked.resize(xy.len(), most),
         }
+        for &number in &self.candidates[known.own.clone()] {
+            let source = &self.field.spacing.sources()[number as usize];
+            let at_sites = abscissae.iter().zip(&mut asked[first..]);
+            at_sites.for_each(|(&x, asked)| *asked = asked.min(source.at([x, y])));
+        }
+        let least = self.field.spacing.least();
+        asked[first..].iter_mut().for_each(|asked| *asked = asked.max(least));
+        census.grid += abscissae.len();
+        census.kept += abscissae.len();
         Ok(())
     }
 
@@ -345,6 +485,13 @@ impl<'a> Sower<'a> {
     }
 }
 
+/// What is known of the function in a cell before it is looked at.
+enum Given {
+    Nothing,
+    Corners([f64; 4]),
+    Nine(Nine),
+}
+
 /// What is known of a cell.
 struct Known {
     corner: Point,
@@ -357,14 +504,25 @@ struct Known {
 }
 
 impl Known {
-    /// The function at `p`, linear along x and along y between the nine values.
-    fn interpolated(&self, v: &Nine, p: Point) -> f64 {
-        let u: [f64; 2] = std::array::from_fn(|d| 2.0 * (p[d] - self.corner[d]) / self.side[d]);
-        let [column, row] = u.map(|u| usize::from(u >= 1.0));
-        let [s, t] = [u[0] - column as f64, u[1] - row as f64];
-        let along_row = |row: usize| v[row][column] + s * (v[row][column + 1] - v[row][column]);
-        along_row(row) + t * (along_row(row + 1) - along_row(row))
+    /// The function at height `y`, linear between the nine values: at the left side, in the middle, and at the right side.
+    fn row(&self, v: &Nine, y: f64) -> [f64; 3] {
+        let u = 2.0 * (y - self.corner[1]) / self.side[1];
+        let row = usize::from(u >= 1.0);
+        let t = u - row as f64;
+        std::array::from_fn(|column| v[row][column] + t * (v[row + 1][column] - v[row][column]))
     }
+
+    /// The function at abscissa `x` of such a row, linear between its three values.
+    #[inline]
+    fn interpolated(&self, row: &[f64; 3], x: f64) -> f64 {
+        let u = 2.0 * (x - self.corner[0]) / self.side[0];
+        let [left, middle, right] = *row;
+        if u < 1.0 { left + u * (middle - left) } else { middle + (u - 1.0) * (right - middle) }
+    }
+}
+
+fn diagonal([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 /// True where the segment nearest to a point outside the material is of a hole.

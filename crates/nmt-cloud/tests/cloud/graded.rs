@@ -32,36 +32,48 @@ fn graded(grading: Grading, nodes: [usize; 2], irregularity: f64) -> CloudParams
     CloudParams { grading: Some(grading), ..params(nodes, irregularity) }
 }
 
-/// Distance of every node from the nearest other one.
-fn nearest_distances(cloud: &Cloud) -> Vec<f64> {
+/// The nearest other node of every node, and its distance.
+fn nearest_nodes(cloud: &Cloud) -> Vec<(usize, f64)> {
     let (xy, mut scratch, mut out) = (cloud.xy(), Scratch::default(), Vec::new());
     let nearest = Nearest::new(xy);
     (0..xy.len())
         .map(|k| {
             nearest.nearest(xy[k], 1, |other| other.index() != k, &mut scratch, &mut out);
-            distance(xy[k], xy[out[0].index()])
+            (out[0].index(), distance(xy[k], xy[out[0].index()]))
         })
         .collect()
 }
 
-/// The largest ratio of the nearest-node distances of two neighbours: of nodes with no other in the circle about the line
+/// The largest ratios of the nearest-node distances of two neighbours: of nodes with no other in the circle about the line
 /// between them, which lies in the section (Gabriel neighbours, part of the Delaunay triangulation).
-fn worst_ratio(cloud: &Cloud, among: std::ops::Range<usize>) -> f64 {
+///
+/// First that of all neighbours, then that of those which with the nearest node of the first are not three of the boundary:
+/// about a sharp corner the two edges bring their nodes as near to each other as they will.
+fn worst_ratios(cloud: &Cloud, among: std::ops::Range<usize>) -> [f64; 2] {
     let (xy, mut scratch, mut out) = (cloud.xy(), Scratch::default(), Vec::new());
-    let (nearest, distances) = (Nearest::new(xy), nearest_distances(cloud));
-    let mut worst = 1.0f64;
+    let (nearest, distances) = (Nearest::new(xy), nearest_nodes(cloud));
+    let mut worst = [1.0f64; 2];
     for k in among.clone() {
         nearest.nearest(xy[k], 24, |_| true, &mut scratch, &mut out);
+        let (n, near) = distances[k];
         for other in out.iter().map(|o| o.index()).filter(|o| *o != k && among.contains(o)) {
             let middle = [0, 1].map(|d| 0.5 * (xy[k][d] + xy[other][d]));
             let radius = 0.5 * distance(xy[k], xy[other]);
             let empty = nearest.distance(middle) >= radius * (1.0 - 1e-9);
             if empty && cloud.boundary().index().locate(middle) != Location::Outside {
-                worst = worst.max(distances[other] / distances[k]);
+                let ratio = distances[other].1 / near;
+                worst[0] = worst[0].max(ratio);
+                if [k, n, other].iter().any(|node| *node >= cloud.n_boundary()) {
+                    worst[1] = worst[1].max(ratio);
+                }
             }
         }
     }
     worst
+}
+
+fn worst_ratio(cloud: &Cloud, among: std::ops::Range<usize>) -> f64 {
+    worst_ratios(cloud, among)[0]
 }
 
 fn l_section() -> Section {
@@ -89,7 +101,8 @@ proptest! {
         for node in cloud.n_boundary()..cloud.n_nodes() {
             let (p, h) = (cloud.xy()[node], cloud.local_spacing(NodeId::of(node)));
             let asked = spacing.at(p).expect("a spacing");
-            prop_assert!((h / asked - 1.0).abs() < 0.02, "{} for {}", h, asked); // functions are interpolated in blocks
+            // Functions are interpolated in blocks: 3 % off at a kink.
+            prop_assert!((h / asked - 1.0).abs() < 0.05, "{} for {}", h, asked);
             // The clearances anew, of segments and nodes.
             let hair = 1e-9 * cloud.size();
             prop_assert!(!index.any_within(p, h / 3.0 - hair));
@@ -98,15 +111,15 @@ proptest! {
         }
         // Of the walls of a slit, each node is nearest to one that it does not see.
         if !matches!(shape, Shape::Slotted { .. }) {
-            // 2.0 in all but a few of a thousand, 2.71 the most seen, at a curved edge; uniform clouds of these sections come to 3.0.
-            let worst = worst_ratio(&cloud, 0..cloud.n_nodes());
-            prop_assert!(worst < 3.0, "{}", worst);
+            let [of_all, beside_others] = worst_ratios(&cloud, 0..cloud.n_nodes());
+            // In 10 000 of them 2.0 but for 2 in 1 000 (up to 2.5), and at sharp corners 1 in 100 (up to 3.4).
+            prop_assert!(of_all < 4.0 && beside_others < 2.7, "{} {}", of_all, beside_others);
         }
-        let distances = nearest_distances(&cloud);
+        let distances = nearest_nodes(&cloud);
         for node in cloud.n_boundary()..cloud.n_nodes() {
-            // Half of it beside the boundary; two levels finer than asked for at the very most.
-            let ratio = distances[node] / cloud.local_spacing(NodeId::of(node));
-            prop_assert!((0.32..1.5).contains(&ratio), "{} at {:?}", ratio, cloud.xy()[node]);
+            // Half of it beside the boundary, or 1.5 where a node has gone; two levels finer than asked for at the very most.
+            let ratio = distances[node].1 / cloud.local_spacing(NodeId::of(node));
+            prop_assert!((0.32..1.6).contains(&ratio), "{} at {:?}", ratio, cloud.xy()[node]);
         }
     }
 
