@@ -44,7 +44,7 @@ const NEIGHBOURS: [[(usize, usize); 2]; 16] = [
 ];
 
 /// The depth of cells at which looking at a function begins.
-pub(crate) fn first_depth(lattice: &NestedLattice) -> i32 {
+fn first_depth(lattice: &NestedLattice) -> i32 {
     let mut depth = lattice.root().depth;
     let most = f64::from(lattice.cells[0].max(lattice.cells[1]));
     while most * 2f64.powi(depth) < f64::from(CELLS_ACROSS) {
@@ -53,22 +53,56 @@ pub(crate) fn first_depth(lattice: &NestedLattice) -> i32 {
     depth
 }
 
-/// The nine values of a cell; those at its corners (lower left, lower right, upper left, upper right) may be known.
+/// A function at the corners, the middles of the sides and the centres of all cells at which looking at it begins.
+#[derive(Clone, Debug)]
+pub(crate) struct FirstLook {
+    depth: i32,
+    columns: usize,
+    values: Vec<f64>, // row by row from below
+}
+
+impl FirstLook {
+    /// Looks at every place once, some 10⁴ of them.
+    ///
+    /// # Errors
+    /// [`CloudError::NotASpacing`].
+    pub fn new(function: &Asked, lattice: &NestedLattice) -> Result<Self, CloudError> {
+        let depth = first_depth(lattice);
+        let cells = lattice.cells.map(|n| {
+            let n = i64::from(n);
+            if depth >= 0 { n << depth } else { (n + (1 << -depth) - 1) >> -depth }
+        });
+        let [columns, rows] = cells.map(|n| 2 * n + 1);
+        let places = (0..rows).flat_map(|j| (0..columns).map(move |i| Cell { depth: depth + 1, i, j }));
+        let values = places.map(|place| function.at(lattice.corner(place))).collect::<Result<_, _>>()?;
+        Ok(Self { depth, columns: columns as usize, values })
+    }
+
+    /// The depth of its cells.
+    pub fn depth(&self) -> i32 {
+        self.depth
+    }
+
+    /// The nine values of one of its cells.
+    pub fn nine(&self, cell: Cell) -> Nine {
+        let first = 2 * (cell.j as usize * self.columns + cell.i as usize);
+        std::array::from_fn(|row| std::array::from_fn(|column| self.values[first + row * self.columns + column]))
+    }
+}
+
+/// The nine values of a cell; those at its corners (lower left, lower right, upper left, upper right) are known.
 pub(crate) fn nine(
     lattice: &NestedLattice,
     cell: Cell,
-    corners: Option<[f64; 4]>,
+    corners: [f64; 4],
     function: &Asked,
 ) -> Result<Nine, CloudError> {
     let mut values = [[0.0; 3]; 3];
     let at = |row: usize, column: usize| place(lattice, cell, row, column);
     for (row, values) in values.iter_mut().enumerate() {
         for (column, value) in values.iter_mut().enumerate() {
-            let corner = if row != 1 && column != 1 { Some(row + column / 2) } else { None };
-            *value = match (corner, corners) {
-                (Some(k), Some(known)) => known[k],
-                _ => function.at(at(row, column))?,
-            };
+            let is_corner = row != 1 && column != 1;
+            *value = if is_corner { corners[row + column / 2] } else { function.at(at(row, column))? };
         }
     }
     Ok(values)
@@ -119,9 +153,13 @@ pub(crate) fn range(v: &Nine) -> [f64; 2] {
 ///
 /// A place that limits h elsewhere is one of these: were the function less steep beside it, the next place on the way would
 /// limit h as much.
-pub(crate) fn steep_places(function: &Asked, lattice: &NestedLattice, growth: f64) -> Result<Steep, CloudError> {
-    let (first, least) = (first_depth(lattice), f64::INFINITY);
-    let mut search = Search { function, lattice, growth, first, found: Vec::new(), least };
+pub(crate) fn steep_places(
+    function: &Asked,
+    look: &FirstLook,
+    lattice: &NestedLattice,
+    growth: f64,
+) -> Result<Steep, CloudError> {
+    let mut search = Search { function, look, lattice, growth, found: Vec::new(), least: f64::INFINITY };
     search.visit(lattice.root(), None)?;
     let Search { mut found, least, .. } = search;
     let key = |source: &Source| (source.ends[0][1], source.ends[0][0]);
@@ -143,9 +181,9 @@ pub(crate) struct Steep {
 
 struct Search<'a> {
     function: &'a Asked,
+    look: &'a FirstLook,
     lattice: &'a NestedLattice,
     growth: f64,
-    first: i32,
     found: Vec<Source>,
     least: f64,
 }
@@ -155,10 +193,13 @@ impl Search<'_> {
         if is_beyond(self.lattice, cell) {
             return Ok(());
         }
-        if cell.depth < self.first {
+        if cell.depth < self.look.depth {
             return cell.children().into_iter().try_for_each(|child| self.visit(child, None));
         }
-        let values = nine(self.lattice, cell, corners, self.function)?;
+        let values = match corners {
+            Some(corners) => nine(self.lattice, cell, corners, self.function)?,
+            None => self.look.nine(cell),
+        };
         let half = self.lattice.spacing().map(|s| s * 0.5f64.powi(cell.depth + 1));
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
         values.iter().flatten().for_each(|&value| (least, most) = (least.min(value), most.max(value)));

@@ -7,6 +7,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 /// Levels whose counts of cells along a side must stay exact in an `i64` and an `f64`.
 const MOST_LEVELS: usize = 64;
 
+/// The bits of the exponent of 1.
+const ONE_EXPONENT: usize = 1023;
+
 /// A count of cells is met to this, so that rounding adds none.
 const COUNT_SLACK: f64 = 1.0e-9;
 
@@ -137,7 +140,18 @@ impl Levels {
         if h >= self.thresholds[0] {
             return 0;
         }
-        self.thresholds.partition_point(|&least| least > h).min(self.thresholds.len() - 1)
+        // Whole part of the logarithm of the ratio's square, to the base 2: half a power of two a level. Rounding is put right.
+        let ratio = self.thresholds[0] / h;
+        let exponent = ((ratio * ratio).to_bits() >> 52) as usize; // not negative, for the ratio is above 1
+        let last = self.thresholds.len() - 1;
+        let mut level = (exponent - ONE_EXPONENT + 1).min(last);
+        while level < last && self.thresholds[level] > h {
+            level += 1;
+        }
+        while self.thresholds[level - 1] <= h {
+            level -= 1;
+        }
+        level
     }
 
     /// Number of levels.
@@ -180,6 +194,18 @@ mod tests {
             assert!((0.840..1.190).contains(&ratio), "{ratio} at {h}");
             h *= 0.97;
         }
+    }
+
+    #[test]
+    fn a_level_begins_at_its_threshold() {
+        let levels = NestedLattice::new(Bbox::of([[0.0, 0.0], [3.0, 1.0]]), 0.17).levels();
+        let anew = |h: f64| levels.thresholds.partition_point(|&least| least > h).min(levels.len() - 1);
+        for &threshold in &levels.thresholds {
+            for h in [threshold.next_down(), threshold, threshold.next_up(), 1.1 * threshold] {
+                assert_eq!(levels.level_of(h), anew(h), "{h}");
+            }
+        }
+        assert_eq!([levels.level_of(1e-300), levels.level_of(1e300)], [levels.len() - 1, 0]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::census::Census;
 use crate::clearance::Clearance;
 use crate::error::CloudError;
 use crate::generate::MAX_GRID_POINTS;
-use crate::gradual::{Nine, bend, corners_of_child, first_depth, is_beyond, nine, nine_of_child, range};
+use crate::gradual::{Nine, bend, corners_of_child, is_beyond, nine, nine_of_child, range};
 use crate::nested::{Cell, Levels, NestedLattice};
 use crate::sources::Source;
 use crate::spacing::Spacing;
@@ -166,7 +166,7 @@ impl<'a> Sower<'a> {
             lattice,
             levels: lattice.levels(),
             index: field.boundary.index(),
-            first_depth: field.spacing.function().map_or(i32::MIN, |_| first_depth(lattice)),
+            first_depth: field.spacing.function_and_look().map_or(i32::MIN, |(_, look)| look.depth()),
             counts_only,
             counted: 0.0,
             candidates: (0..field.spacing.sources().len() as u32).collect(),
@@ -202,10 +202,10 @@ impl<'a> Sower<'a> {
         let (mut least, mut most) = (self.field.spacing.most(), self.field.spacing.most());
         let waits = cell.depth < self.first_depth; // the function is not looked at yet
         let mut values: Option<Nine> = None;
-        if let (Some(function), false) = (self.field.spacing.function(), waits) {
+        if let (Some((function, look)), false) = (self.field.spacing.function_and_look(), waits) {
             let v = match given {
-                Given::Nothing => nine(self.lattice, cell, None, function)?,
-                Given::Corners(corners) => nine(self.lattice, cell, Some(corners), function)?,
+                Given::Nothing => look.nine(cell),
+                Given::Corners(corners) => nine(self.lattice, cell, corners, function)?,
                 Given::Nine(nine) => nine,
             };
             let [low, high] = range(&v);

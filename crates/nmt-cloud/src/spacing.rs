@@ -2,7 +2,7 @@
 
 use crate::error::CloudError;
 use crate::grading::{Grading, MIN_SPACING_REL, Refinement, SpacingFunction, Target};
-use crate::gradual::steep_places;
+use crate::gradual::{FirstLook, steep_places};
 use crate::nested::NestedLattice;
 use crate::section::{CloudParams, GivenNode, Section};
 use crate::sources::{Source, SourceTree};
@@ -22,6 +22,7 @@ const SECTION_CHORD_REL: f64 = 1.0e-6;
 #[derive(Clone, Debug)]
 pub struct Spacing {
     function: Option<Asked>,
+    look: Option<FirstLook>,
     sources: SourceTree,
     lattice: NestedLattice,
     most: f64,
@@ -102,13 +103,14 @@ impl Spacing {
             Asked { function, section: Locator::new(sides), most, least }
         });
         let mut finest = most;
-        if let Some(function) = &function {
-            let steep = steep_places(function, &lattice, grading.growth)?;
+        let look = function.as_ref().map(|function| FirstLook::new(function, &lattice)).transpose()?;
+        if let (Some(function), Some(look)) = (&function, &look) {
+            let steep = steep_places(function, look, &lattice, grading.growth)?;
             found.extend(steep.sources);
             finest = steep.least;
         }
         let finest = found.iter().map(|source| source.size).fold(finest, f64::min);
-        Ok(Self { function, sources: SourceTree::new(found), lattice, most, least, finest })
+        Ok(Self { function, look, sources: SourceTree::new(found), lattice, most, least, finest })
     }
 
     /// h at `p`, user's length unit.
@@ -145,6 +147,11 @@ impl Spacing {
 
     pub(crate) fn function(&self) -> Option<&Asked> {
         self.function.as_ref()
+    }
+
+    /// The function, and what has been seen of it.
+    pub(crate) fn function_and_look(&self) -> Option<(&Asked, &FirstLook)> {
+        self.function.as_ref().zip(self.look.as_ref())
     }
 
     pub(crate) fn sources(&self) -> &[Source] {
