@@ -331,6 +331,14 @@ fn arc(reader: &mut Reader<'_>, table: &Table<'_, '_>, value: &Value<'_>) -> Opt
 }
 
 fn parametric(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Path> {
+    if let (None, Some(graph), None) = (table.get("x"), table.get("y"), table.get("t")) {
+        let of_x = graph.get_ref().as_str().filter(|text| Expression::parse(text, &["x"]).is_ok());
+        let written = quote(of_x.unwrap_or("f(x)"));
+        let message = "it has `y` without `x` and `t`";
+        let remedy = format!("write {{ curve = {written} }} for y = f(x), or add `x` and `t` of a parametric curve");
+        reader.faults.push(table.place.clone(), table.item.as_str(), message, remedy);
+        return None;
+    }
     let [x, y] = [("x", "\"cos(t)\""), ("y", "\"sin(t)\"")].map(|(key, example)| {
         let value = reader.required(table, key, example)?;
         formula(reader, table, key, value, "t")
