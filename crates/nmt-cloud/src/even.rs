@@ -204,13 +204,13 @@ impl View<'_> {
             (true, false) => self.going.push(n),
             (false, true) => self.going.push(k),
             (true, true) if self.is_across_outside(k, n) => {}
-            _ => self.gaps.push((o, mean([self.xy[k], self.xy[o]].into_iter()))),
+            _ => self.gaps.push((o, middle(self.xy[k], self.xy[o]))),
         }
     }
 
     /// True for two nodes of the boundary that lie on two sides of what is no material, as the walls of a slit.
     fn is_across_outside(&self, k: usize, n: usize) -> bool {
-        let middle = mean([self.xy[k], self.xy[n]].into_iter());
+        let middle = middle(self.xy[k], self.xy[n]);
         let index = self.field.boundary.index();
         // The middle of a segment is on it up to rounding.
         !index.any_within(middle, SAME_POINT_REL * self.field.clearance.size)
@@ -221,7 +221,7 @@ impl View<'_> {
     /// neighbours, which share a side in every Delaunay triangulation).
     fn are_neighbours(&self, k: usize, o: usize) -> bool {
         let [p, q] = [self.xy[k], self.xy[o]];
-        let middle = mean([p, q].into_iter());
+        let middle = middle(p, q);
         self.index.distance(middle) >= 0.5 * distance(p, q) * (1.0 - ROOM_REL)
             && self.field.boundary.index().locate(middle) != Location::Outside
     }
@@ -234,6 +234,11 @@ fn may_lie(p: Point, asked: f64, field: &Field, nodes: &Nearest) -> bool {
     }
     let index = field.boundary.index();
     field.clearance.at(asked).holds(p, index) && index.locate(p) == Location::Inside
+}
+
+/// The same to the bit whichever is first.
+fn middle(p: Point, q: Point) -> Point {
+    mean([p, q].into_iter())
 }
 
 fn mean(points: impl ExactSizeIterator<Item = Point>) -> Point {
@@ -263,7 +268,7 @@ fn joined(places: Vec<(Point, f64)>) -> Vec<(Point, f64)> {
         [] => Some(places[k]),
         [other] if rivals[other] == [k] => (k < other).then(|| {
             let [(p, a), (q, b)] = [places[k], places[other]];
-            (mean([p, q].into_iter()), 0.5 * (a + b))
+            (middle(p, q), 0.5 * (a + b))
         }),
         _ => rivals[k].iter().all(|&other| rivals[other].len() > rivals[k].len()).then_some(places[k]),
     };

@@ -21,8 +21,7 @@ const SECTION_CHORD_REL: f64 = 1.0e-6;
 /// least, and finer wherever the function varies much or asks for less.
 #[derive(Clone, Debug)]
 pub struct Spacing {
-    function: Option<Asked>,
-    look: Option<FirstLook>,
+    function: Option<(Asked, FirstLook)>, // and what has been seen of it
     sources: SourceTree,
     lattice: NestedLattice,
     most: f64,
@@ -103,14 +102,15 @@ impl Spacing {
             Asked { function, section: Locator::new(sides), most, least }
         });
         let mut finest = most;
-        let look = function.as_ref().map(|function| FirstLook::new(function, &lattice)).transpose()?;
-        if let (Some(function), Some(look)) = (&function, &look) {
+        let looked_at = |function| FirstLook::new(&function, &lattice).map(|look| (function, look));
+        let function = function.map(looked_at).transpose()?;
+        if let Some((function, look)) = &function {
             let steep = steep_places(function, look, &lattice, grading.growth)?;
             found.extend(steep.sources);
             finest = steep.least;
         }
         let finest = found.iter().map(|source| source.size).fold(finest, f64::min);
-        Ok(Self { function, look, sources: SourceTree::new(found), lattice, most, least, finest })
+        Ok(Self { function, sources: SourceTree::new(found), lattice, most, least, finest })
     }
 
     /// h at `p`, user's length unit.
@@ -119,7 +119,7 @@ impl Spacing {
     /// [`CloudError::NotASpacing`] where the function is not a positive number there, in the section.
     pub fn at(&self, p: Point) -> Result<f64, CloudError> {
         let most = match &self.function {
-            Some(function) => function.at(p)?,
+            Some((function, _)) => function.at(p)?,
             None => self.most,
         };
         Ok(self.sources.least(p, most).max(self.least))
@@ -146,12 +146,12 @@ impl Spacing {
     }
 
     pub(crate) fn function(&self) -> Option<&Asked> {
-        self.function.as_ref()
+        self.function.as_ref().map(|(function, _)| function)
     }
 
     /// The function, and what has been seen of it.
-    pub(crate) fn function_and_look(&self) -> Option<(&Asked, &FirstLook)> {
-        self.function.as_ref().zip(self.look.as_ref())
+    pub(crate) fn function_and_look(&self) -> Option<&(Asked, FirstLook)> {
+        self.function.as_ref()
     }
 
     pub(crate) fn sources(&self) -> &[Source] {
