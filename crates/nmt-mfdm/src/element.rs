@@ -1,6 +1,6 @@
-//! A triangle of the mesh, and the integrals of monomials about its corners over it.
+//! A triangle of the mesh, and the integrals of monomials about its corners over it and along its sides.
 
-use crate::basis::{INVERSE, MAX_MONOMIALS, MAX_ORDER, monomials, n_monomials, row};
+use crate::basis::{INVERSE, MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::blend::barycentric_gradients;
 use nmt_geom::point::sub;
 use nmt_geom::{NodeId, Point, TriId};
@@ -37,6 +37,20 @@ impl Element {
     }
 }
 
+/// Means of λ_aφ_m along the side from a corner a to another, φ_m the monomials of degree ≤ P about a; see [`row`].
+///
+/// At the share t of the side s, λ_a is 1 − t and φ_m, of degree d, tᵈ times what it is at the end: the mean is
+/// φ_m(s)/((d + 1)(d + 2)). About the other end s is −s, so that the means of odd degree change their sign.
+#[inline(always)]
+pub(crate) fn side_means<const P: usize>(side: [f64; 2]) -> [f64; MAX_MONOMIALS] {
+    let mut means = [0.0; MAX_MONOMIALS];
+    monomials(side, P, &mut means);
+    for d in 0..P + 1 {
+        (0..d + 1).for_each(|b| means[row(d - b, b)] *= INVERSE[d + 1] * INVERSE[d + 2]);
+    }
+    means
+}
+
 /// ∫φ_m and ∫λ_aφ_m, φ_m the monomials of degree ≤ P about a corner a in (x − x_a, y − y_a); see [`row`].
 pub(crate) struct CornerIntegrals<const P: usize> {
     plain: [f64; MAX_MONOMIALS],
@@ -44,41 +58,6 @@ pub(crate) struct CornerIntegrals<const P: usize> {
 }
 
 impl<const P: usize> CornerIntegrals<P> {
-    /// Over a triangle, about its corner `a`, in closed form.
-    ///
-    /// With the sides s and t from a to b and c, d!·φ_m of the degree d are the coefficients of (λ_b·s + λ_c·t)^d, a side
-    /// standing for its linear form s_x·X + s_y·Y. Since ∫λ_bᵖλ_c^q = 2A·p! q!/(p + q + 2)!, the integrals are those of
-    /// Σ sᵖt^q over p + q = d, which is s times the sum of the degree below, and t^d.
-    #[inline(always)]
-    pub fn of_triangle(element: &Element, a: usize) -> Self {
-        let [s, t] = [1, 2].map(|next| sub(element.corners[(a + next) % 3], element.corners[a]));
-        let mut sums = [0.0; MAX_MONOMIALS];
-        let mut power = [0.0; MAX_ORDER + 1]; // t^d
-        (sums[0], power[0]) = (1.0, 1.0);
-        let mut integrals = Self::ZERO;
-        let mut factor = element.area; // 2A/(d + 2)!
-        for d in 0..P + 1 {
-            if d > 0 {
-                factor *= INVERSE[d + 2];
-                power[d] = t[1] * power[d - 1];
-                for b in (1..d).rev() {
-                    power[b] = t[0] * power[b] + t[1] * power[b - 1];
-                }
-                power[0] *= t[0];
-                for b in 0..d + 1 {
-                    let by_x = if b < d { s[0] * sums[row(d - 1 - b, b)] } else { 0.0 };
-                    let by_y = if b > 0 { s[1] * sums[row(d - b, b - 1)] } else { 0.0 };
-                    sums[row(d - b, b)] = power[b] + by_x + by_y;
-                }
-            }
-            for b in 0..d + 1 {
-                integrals.plain[row(d - b, b)] = factor * sums[row(d - b, b)];
-                integrals.with_own[row(d - b, b)] = factor * INVERSE[d + 3] * sums[row(d - b, b)];
-            }
-        }
-        integrals
-    }
-
     /// By places with weights, in the coordinates of an element and about its corner `a`.
     pub fn of_places(element: &Element, a: usize, places: impl Iterator<Item = ([f64; 3], f64)>) -> Self {
         let [s, t] = [1, 2].map(|next| sub(element.corners[(a + next) % 3], element.corners[a]));
@@ -114,26 +93,35 @@ impl<const P: usize> CornerIntegrals<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::basis::MAX_ORDER;
     use crate::gauss::Rule;
+    use nmt_geom::point::{cross, dot};
 
     #[test]
-    fn integrals_in_closed_form_are_those_of_a_rule_that_is_exact() {
+    fn the_flow_through_the_sides_is_that_of_a_rule_that_is_exact() {
         let corners = [[0.3, -0.2], [1.4, 0.1], [0.6, 0.9]];
         let element = Element {
             triangle: TriId::of(0),
             nodes: [0, 1, 2].map(NodeId::of),
             corners,
-            area: 0.5 * nmt_geom::point::cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])),
+            area: 0.5 * cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])),
             slopes: barycentric_gradients(corners),
         };
         let rule = Rule::of(12).expect("a rule of twelve points"); // exact to degree 6
+        let slope = [0.7, -1.3];
         for a in 0..3 {
+            let (mut by_points, mut by_sides) = ([0.0; MAX_MONOMIALS], [0.0; MAX_MONOMIALS]);
             let places = rule.points.iter().zip(&rule.weights).map(|(lambda, weight)| (*lambda, weight * element.area));
-            let by_points = CornerIntegrals::<MAX_ORDER>::of_places(&element, a, places);
-            let closed = CornerIntegrals::<MAX_ORDER>::of_triangle(&element, a);
+            let integrals = CornerIntegrals::<MAX_ORDER>::of_places(&element, a, places);
+            integrals.add_along(slope, dot(slope, element.slopes[a]), &mut by_points);
+            // λ_a is 0 on the third side.
+            for (other, way) in [((a + 1) % 3, 1.0), ((a + 2) % 3, -1.0)] {
+                let side = sub(corners[other], corners[a]);
+                let means = side_means::<MAX_ORDER>(side);
+                (0..MAX_MONOMIALS).for_each(|m| by_sides[m] += way * cross(slope, side) * means[m]);
+            }
             for m in 0..MAX_MONOMIALS {
-                assert!((closed.plain[m] - by_points.plain[m]).abs() < 1e-15, "corner {a}, monomial {m}"); // rounding
-                assert!((closed.with_own[m] - by_points.with_own[m]).abs() < 1e-15, "corner {a}, monomial {m}");
+                assert!((by_sides[m] - by_points[m]).abs() < 1e-14, "corner {a}, monomial {m}"); // rounding
             }
         }
     }

@@ -4,6 +4,7 @@
 //! on one core and on sixty-four.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Points per piece of work: enough to hide the cost of handing it out.
 pub(crate) const CHUNK: usize = 512;
@@ -42,6 +43,45 @@ pub(crate) fn take_pieces<T: Send>(
     for first in range.clone().step_by(BATCH * size) {
         let batch = first..(first + BATCH * size).min(range.end);
         map_pieces(batch, size, &work).into_iter().for_each(&mut take);
+    }
+}
+
+/// [`take_pieces`] whose results are made in the same few rooms again and again.
+pub(crate) fn take_from_rooms<T: Send>(
+    range: Range<usize>,
+    size: usize,
+    room: impl Fn() -> T,
+    work: impl Fn(Range<usize>, &mut T) + Sync + Send,
+    mut take: impl FnMut(&mut T),
+) {
+    let mut rooms: Vec<T> = (0..range.len().div_ceil(size).min(BATCH)).map(|_| room()).collect();
+    for first in range.clone().step_by(BATCH * size) {
+        let pieces = (range.end - first).div_ceil(size).min(BATCH);
+        let piece = |k: usize| first + k * size..(first + (k + 1) * size).min(range.end);
+        fill_pieces(&mut rooms[..pieces], 1, |k, rooms| rooms.iter_mut().for_each(|room| work(piece(k), room)));
+        rooms[..pieces].iter_mut().for_each(&mut take);
+    }
+}
+
+/// What pieces of work need and leave as they found it, such as large rooms: as many as are at work at once.
+pub(crate) struct Pool<W, F: Fn() -> W> {
+    idle: Mutex<Vec<W>>,
+    make: F,
+}
+
+impl<W, F: Fn() -> W> Pool<W, F> {
+    pub fn new(make: F) -> Self {
+        Self { idle: Mutex::new(Vec::new()), make }
+    }
+
+    /// `work` with one of them, which must not change the result.
+    pub fn with<T>(&self, work: impl FnOnce(&mut W) -> T) -> T {
+        let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = idle().pop();
+        let mut worker = found.unwrap_or_else(&self.make);
+        let result = work(&mut worker);
+        idle().push(worker);
+        result
     }
 }
 

@@ -2,7 +2,7 @@
 //! a flux.
 
 use crate::error::MfdmError;
-use crate::parallel::{large_pieces, take_pieces};
+use crate::parallel::{CHUNK, Pool, take_from_rooms};
 use crate::problem::HoleCondition;
 use crate::solver::csr::{Csr, Row};
 use nmt_geom::{LoopId, NodeId, Point};
@@ -150,14 +150,6 @@ impl SplitRow {
         self.unknowns.binary_search_by_key(&(k as u32), |(unknown, _)| *unknown).map_or(0.0, |at| self.unknowns[at].1)
     }
 
-    /// Makes it 0, with the room it has.
-    fn clear(&mut self) {
-        let (mut unknowns, mut holes) = (std::mem::take(&mut self.unknowns), std::mem::take(&mut self.holes));
-        unknowns.clear();
-        holes.clear();
-        *self = Self { unknowns, holes, ..Self::default() };
-    }
-
     /// Adds `coefficient` times the value of a node of that role; unknowns must come in ascending order.
     #[inline]
     pub fn add(&mut self, role: Role, coefficient: f64) {
@@ -211,14 +203,8 @@ impl RowSum {
     /// The row so far, by role; begins the next one.
     pub fn take(&mut self, roles: &Roles) -> SplitRow {
         let mut row = SplitRow::default();
-        self.take_to(roles, &mut row);
-        row
-    }
-
-    /// As [`Self::take`], in the place of what is in `row`.
-    pub fn take_to(&mut self, roles: &Roles, row: &mut SplitRow) {
-        row.clear();
         self.drain(|node, sum| row.add(roles.of(node), sum));
+        row
     }
 
     /// Hands over (node, sum) by ascending number; begins the next row.
@@ -247,12 +233,17 @@ pub(crate) struct LinearSystem {
     pub hole_columns: Vec<Vec<(u32, f64)>>,
     /// Whether a value on the boundary enters the equation, be it 0; shape (n,).
     pub is_beside: Vec<bool>,
+    /// What known values contribute to the equation under way.
+    known: f64,
+    /// Whether a value on the boundary enters it.
+    is_under_way_beside: bool,
 }
 
 impl LinearSystem {
     /// No equation yet, in `n` unknowns.
     pub fn new(n: usize, n_holes: usize) -> Self {
-        Self { matrix: Csr::new(n), rhs: Vec::new(), hole_columns: vec![Vec::new(); n_holes], is_beside: Vec::new() }
+        let (matrix, hole_columns) = (Csr::new(n), vec![Vec::new(); n_holes]);
+        Self { matrix, rhs: Vec::new(), hole_columns, is_beside: Vec::new(), known: 0.0, is_under_way_beside: false }
     }
 
     /// As [`Self::new`], with room for so many entries of A.
@@ -277,31 +268,54 @@ impl LinearSystem {
         Ok(system)
     }
 
-    /// Collects the equations of pieces of the unknowns, on all cores; few pieces are held beside the system.
+    /// Collects the equations of all unknowns, on all cores; few are held beside the system. `equation` appends that of an
+    /// unknown, with the help of a `worker`, of which there is one a thread.
     ///
     /// # Errors
-    /// The first that a piece has.
-    pub fn of_pieces(
+    /// The first that an equation has.
+    pub fn of_unknowns<W: Send>(
         roles: &Roles,
-        piece: impl Fn(Range<usize>) -> Result<Self, MfdmError> + Sync + Send,
+        worker: impl Fn() -> W + Sync + Send,
+        equation: impl Fn(&mut W, usize, &mut Self) -> Result<(), MfdmError> + Sync + Send,
     ) -> Result<Self, MfdmError> {
-        let n = roles.n_unknowns;
-        let mut system = Ok(Self::new(n, roles.n_holes));
-        take_pieces(0..n, large_pieces(n), piece, |piece| match (&mut system, piece) {
-            (Ok(system), Ok(piece)) => system.append(piece),
-            (Ok(_), Err(error)) => system = Err(error),
-            (Err(_), _) => {}
-        });
+        let empty = || Self::new(roles.n_unknowns, roles.n_holes);
+        let (workers, mut system) = (Pool::new(worker), Ok(empty()));
+        let work = |piece: Range<usize>, (room, outcome): &mut (Self, Result<(), MfdmError>)| {
+            room.clear();
+            *outcome = workers.with(|worker| piece.clone().try_for_each(|k| equation(worker, k, room)));
+        };
+        take_from_rooms(
+            0..roles.n_unknowns,
+            CHUNK,
+            || (empty(), Ok(())),
+            work,
+            |(room, outcome)| {
+                if let Ok(so_far) = &mut system {
+                    match std::mem::replace(outcome, Ok(())) {
+                        Ok(()) => so_far.append(room),
+                        Err(error) => system = Err(error),
+                    }
+                }
+            },
+        );
         system
     }
 
-    fn append(&mut self, piece: Self) {
+    /// Makes it empty, with the room it has.
+    fn clear(&mut self) {
+        self.matrix.clear();
+        self.rhs.clear();
+        self.is_beside.clear();
+        self.hole_columns.iter_mut().for_each(Vec::clear);
+    }
+
+    fn append(&mut self, piece: &Self) {
         let first = self.rhs.len() as u32;
         self.matrix.append(&piece.matrix);
-        self.rhs.extend(piece.rhs);
-        self.is_beside.extend(piece.is_beside);
-        for (all, own) in self.hole_columns.iter_mut().zip(piece.hole_columns) {
-            all.extend(own.into_iter().map(|(row, coefficient)| (first + row, coefficient)));
+        self.rhs.extend_from_slice(&piece.rhs);
+        self.is_beside.extend_from_slice(&piece.is_beside);
+        for (all, own) in self.hole_columns.iter_mut().zip(&piece.hole_columns) {
+            all.extend(own.iter().map(|&(row, coefficient)| (first + row, coefficient)));
         }
     }
 
@@ -367,14 +381,38 @@ impl LinearSystem {
 
     /// Appends an equation.
     pub fn push(&mut self, equation: &Equation) {
-        let number = self.rhs.len() as u32;
-        let entries = equation.row.unknowns.iter();
-        entries.for_each(|&(column, value)| self.matrix.push(column, value));
+        let SplitRow { unknowns, holes, known, is_beside } = &equation.row;
+        unknowns.iter().for_each(|&(k, coefficient)| self.add(Role::Unknown(k), coefficient));
+        holes.iter().for_each(|&(hole, coefficient)| self.add(Role::Hole(hole), coefficient));
+        self.known += known;
+        self.is_under_way_beside |= is_beside;
+        self.end(equation.rhs);
+    }
+
+    /// Adds `coefficient` times the value of a node of that role to the equation under way; unknowns must come in ascending
+    /// order.
+    #[inline]
+    pub fn add(&mut self, role: Role, coefficient: f64) {
+        match role {
+            Role::Unknown(k) => return self.matrix.push(k, coefficient),
+            Role::Hole(hole) => {
+                let (number, column) = (self.rhs.len() as u32, &mut self.hole_columns[hole as usize]);
+                match column.last_mut() {
+                    Some((row, total)) if *row == number => *total += coefficient,
+                    _ => column.push((number, coefficient)),
+                }
+            }
+            Role::Known(value) => self.known += coefficient * value,
+        }
+        self.is_under_way_beside = true;
+    }
+
+    /// Ends the equation under way.
+    #[inline]
+    pub fn end(&mut self, rhs: f64) {
         self.matrix.end_row();
-        let holes = equation.row.holes.iter();
-        holes.for_each(|&(hole, value)| self.hole_columns[hole as usize].push((number, value)));
-        self.rhs.push(equation.rhs - equation.row.known);
-        self.is_beside.push(equation.row.is_beside);
+        self.rhs.push(rhs - std::mem::take(&mut self.known));
+        self.is_beside.push(std::mem::take(&mut self.is_under_way_beside));
     }
 }
 

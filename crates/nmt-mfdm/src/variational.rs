@@ -11,15 +11,8 @@ use nmt_tri::{Mesh, NodeTris};
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
-    LinearSystem::of_pieces(setting.frame.roles, |piece| {
-        let (mut maker, mut equation) = (EquationMaker::new(setting, weak), Equation::default());
-        let mut system = LinearSystem::new(setting.frame.roles.n_unknowns, setting.frame.roles.n_holes);
-        for k in piece {
-            maker.make(k, &mut equation)?;
-            system.push(&equation);
-        }
-        Ok(system)
-    })
+    let maker = || EquationMaker::new(setting, weak);
+    LinearSystem::of_unknowns(setting.frame.roles, maker, |maker, k, system| maker.append(k, system))
 }
 
 /// Makes equations; one a thread, with room to be used again.
@@ -42,26 +35,39 @@ impl<'a> EquationMaker<'a> {
     /// # Errors
     /// [`MfdmError::Datum`] where the source is not finite.
     pub fn of(&mut self, k: usize) -> Result<Equation, MfdmError> {
-        let mut equation = Equation::default();
-        self.make(k, &mut equation)?;
-        Ok(equation)
+        let node = self.setting.frame.roles.node(k);
+        if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
+            return Ok(of_value);
+        }
+        let rhs = self.sum_up(node)?;
+        Ok(Equation { row: self.sum.take(self.setting.frame.roles), rhs })
     }
 
-    /// As [`Self::of`], in the place of what is in `equation`.
-    fn make(&mut self, k: usize, equation: &mut Equation) -> Result<(), MfdmError> {
-        let Frame { mesh, roles, node_tris, source, fluxes, source_rule } = self.setting.frame;
+    /// Appends the equation of unknown `k`.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    fn append(&mut self, k: usize, system: &mut LinearSystem) -> Result<(), MfdmError> {
+        let roles = self.setting.frame.roles;
         let node = roles.node(k);
         if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
-            *equation = of_value;
+            system.push(&of_value);
             return Ok(());
         }
+        let rhs = self.sum_up(node)?;
+        self.sum.drain(|node, coefficient| system.add(roles.of(node), coefficient));
+        system.end(rhs);
+        Ok(())
+    }
+
+    /// Sums up the left side of the equation with a node's hat; its right side.
+    fn sum_up(&mut self, node: NodeId) -> Result<f64, MfdmError> {
+        let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
         self.around.clear();
         self.around.extend(node_tris.around(node).iter().map(|&t| Element::new(mesh, t)));
         let slopes = self.around.iter().map(|element| (element, element.hat_slope(node)));
         self.weak.add(slopes, &mut self.gathered, &mut self.sum);
-        self.sum.take_to(roles, &mut equation.row);
-        equation.rhs = source.with_hat(mesh, source_rule, fluxes, node, &self.around)?;
-        Ok(())
+        source.with_hat(mesh, source_rule, fluxes, node, &self.around)
     }
 }
 

@@ -3,7 +3,7 @@
 //! The left side of the variational form (v a hat) and of the circulation on holes (v one around a hole) alike.
 
 use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
-use crate::element::{CornerIntegrals, Element};
+use crate::element::{CornerIntegrals, Element, side_means};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
@@ -13,7 +13,7 @@ use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::stencils::Stencils;
 use crate::system::RowSum;
 use crate::true_edges::of_triangle;
-use nmt_geom::point::dot;
+use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, barycentric};
 use std::array::from_fn;
@@ -54,15 +54,30 @@ pub(crate) struct Gathered {
 }
 
 impl Gathered {
-    /// The moments of a node, 0 at first.
-    fn of(&mut self, node: NodeId) -> &mut Moments {
+    /// Place of the moments of a node, which are 0 at first.
+    fn slot(&mut self, node: NodeId) -> usize {
         // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
-        let slot = self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
+        self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
             self.nodes.push(node);
             self.moments.push([0.0; MAX_MONOMIALS]);
             self.nodes.len() - 1
-        });
-        &mut self.moments[slot]
+        })
+    }
+
+    /// Adds what flows along a constant g through the side from the node in slot `from` to that in `to`: ∫(g·n)u, where u
+    /// blends the polynomials of the two.
+    #[inline(always)]
+    fn add_side<const P: usize>(&mut self, g: [f64; 2], side: [f64; 2], [from, to]: [usize; 2]) {
+        let means = side_means::<P>(side);
+        let flow = cross(g, side);
+        let mut way_back = flow;
+        for d in 0..P + 1 {
+            for m in (0..d + 1).map(|b| row(d - b, b)) {
+                self.moments[from][m] += flow * means[m];
+                self.moments[to][m] += way_back * means[m];
+            }
+            way_back = -way_back;
+        }
     }
 }
 
@@ -149,21 +164,26 @@ impl<'a> WeakForm<'a> {
         gathered.moments.clear();
         let is_exact = self.degree >= P;
         for (element, slope) in elements {
+            let slots = element.nodes.map(|node| gathered.slot(node));
+            if is_exact {
+                // ∫∇u·g over a triangle is what flows along g through its sides.
+                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                    let side = sub(element.corners[b], element.corners[a]);
+                    gathered.add_side::<P>(slope, side, [slots[a], slots[b]]);
+                }
+            }
             let slivers = of_triangle(&self.fluxes.slivers, element.triangle);
-            for a in 0..3 {
+            if is_exact && slivers.is_empty() {
+                continue;
+            }
+            let points = self.rule.points.iter().zip(&self.rule.weights);
+            let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
+            let beyond = slivers.iter().map(|s| (barycentric(element.corners, s.at), s.weight));
+            for (a, slot) in slots.into_iter().enumerate() {
+                let places = points.clone().filter(|_| !is_exact).chain(beyond.clone());
                 let along = dot(slope, element.slopes[a]);
-                let moments = gathered.of(element.nodes[a]);
-                if is_exact {
-                    CornerIntegrals::<P>::of_triangle(element, a).add_along(slope, along, moments);
-                } else {
-                    let points = self.rule.points.iter().zip(&self.rule.weights);
-                    let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
-                    CornerIntegrals::<P>::of_places(element, a, points).add_along(slope, along, moments);
-                }
-                if !slivers.is_empty() {
-                    let places = slivers.iter().map(|s| (barycentric(element.corners, s.at), s.weight));
-                    CornerIntegrals::<P>::of_places(element, a, places).add_along(slope, along, moments);
-                }
+                let integrals = CornerIntegrals::<P>::of_places(element, a, places);
+                integrals.add_along(slope, along, &mut gathered.moments[slot]);
             }
         }
         for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
