@@ -90,6 +90,9 @@ impl Progress {
 
 impl Shown {
     fn stage(&self, what: &str) {
+        if self.bar.prefix() == what {
+            return;
+        }
         self.style("{spinner} [{elapsed}] {prefix}");
         self.bar.set_prefix(what.to_owned());
     }
@@ -133,8 +136,8 @@ fn words(stage: Stage) -> &'static str {
     match stage {
         Stage::Cloud => "cloud",
         Stage::Mesh => "mesh",
-        Stage::Stencils => "stars",
-        Stage::Assemble => "equations",
+        // They take turns.
+        Stage::Stencils | Stage::Assemble => "stars and equations",
         Stage::Solve => "linear solver",
         Stage::Post => "recovery and results",
         Stage::Estimate => "error estimate",

@@ -1,38 +1,37 @@
 //! The variational form with hats, its stars made and dropped batch by batch.
 //!
-//! From order 3 on the rows of all stars would be most of what a solution holds: 1.4 kB a node at order 3, 3.4 kB at
-//! order 4. Nodes are in spatial order, so that the polynomials which some thousand consecutive equations take are
-//! little more than those of their own nodes; stars at the rims of batches are found twice.
+//! The rows of all stars would be most of what a solution holds: 0.4 kB a node at order 2, 3.4 kB at order 4. Nodes are in
+//! spatial order, so that the polynomials which some thousand consecutive equations take are little more than those of their
+//! own nodes; stars at the rims of batches are found twice.
 
 use crate::assembly::{Frame, Setting};
+use crate::basis::n_monomials;
 use crate::circulation::{hole_equations, nodes_of_equations};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::gauss::Rule;
-use crate::mend::{ROUNDS, is_soft, nodes_around, soft_nodes, touched};
-use crate::parallel::map_pieces;
+use crate::mend::{ROUNDS, nodes_around, touched};
 use crate::problem::Formulation;
 use crate::repair::StarOutcome;
-use crate::solve::Event;
-use crate::stencils::{StarParams, StarReport, Stencils, half_as_many_again};
+use crate::solve::{Event, Stage};
+use crate::stencils::{Outcome, StarParams, StarReport, Stencils, half_as_many_again};
 use crate::surroundings::Surroundings;
 use crate::system::{Equation, LinearSystem};
-use crate::variational::EquationMaker;
+use crate::variational::{self, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
 use std::collections::BTreeMap;
 
-/// Equations whose stars are held at a time.
-const BATCH: usize = 1 << 14;
-
-/// Equations per piece of work.
-const PIECE: usize = 1 << 11;
+/// Coefficients of stars that are held at a time, 64 MB.
+const HELD: usize = 1 << 23;
 
 /// The system and what became of the stars.
 pub(crate) struct Batched {
     /// With the stars of soft nodes mended.
     pub system: LinearSystem,
+    /// Of each equation.
+    pub firmness: Vec<Firmness>,
     /// Of the holes' constants.
     pub equations: Vec<Equation>,
     pub stars: StarReport,
@@ -50,7 +49,8 @@ pub(crate) fn assemble(
     rule: &Rule,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Batched, MfdmError> {
-    assemble_by(BATCH, frame, around, stars, rule, observer)
+    let a_star = n_monomials(stars.order) * stars.size;
+    assemble_by((HELD / a_star).max(1), frame, around, stars, rule, observer)
 }
 
 /// [`assemble`] with `batch` equations at a time.
@@ -70,23 +70,31 @@ fn assemble_by(
         rule,
         larger: BTreeMap::new(),
         sizes: vec![0; n_nodes],
-        outcomes: vec![StarOutcome::default(); n_nodes],
+        outcomes: vec![Outcome::default(); n_nodes],
     };
     let n = frame.roles.n_unknowns;
-    let mut system = LinearSystem::new(n, frame.roles.n_holes);
+    let (mut system, mut firmness) = (LinearSystem::new(n, frame.roles.n_holes), Vec::with_capacity(n));
     for first in (0..n).step_by(batch) {
-        let unknowns: Vec<usize> = (first..(first + batch).min(n)).collect();
-        for equation in making.equations(&unknowns)? {
-            system.push(&equation);
-        }
-        observer(Event::Nodes { done: first + unknowns.len(), of: n });
+        let unknowns = first..(first + batch).min(n);
+        observer(Event::Begun(Stage::Stencils));
+        let stencils = making.stencils(nodes_around(frame, unknowns.clone()))?;
+        observer(Event::Nodes { done: unknowns.end, of: n });
+        observer(Event::Ended(Stage::Stencils));
+        observer(Event::Begun(Stage::Assemble));
+        let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
+        firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut system)?);
+        drop(stencils);
+        observer(Event::Ended(Stage::Assemble));
     }
+    observer(Event::Begun(Stage::Assemble));
     // Nodes that enter no equation have stars too.
     let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| making.sizes[node] == 0).map(NodeId::of).collect();
     for nodes in rest.chunks(batch) {
         making.stencils(nodes.to_vec())?;
     }
-    let mut soft = soft_nodes(frame, &system, 0..n);
+    let soft_unknowns = (0..n).filter(|&k| firmness[k].is_soft());
+    let mut soft: Vec<NodeId> = soft_unknowns.map(|k| frame.roles.node(k)).collect();
+    let mut anew = BTreeMap::new();
     for _ in 0..ROUNDS {
         if soft.is_empty() {
             break;
@@ -95,20 +103,23 @@ fn assemble_by(
         making.larger.extend(enlarged.collect::<Vec<_>>());
         let touched = touched(frame, &soft);
         for unknowns in touched.chunks(batch) {
-            let anew = unknowns.iter().copied().zip(making.equations(unknowns)?);
-            system.replace(&anew.collect::<Vec<_>>());
+            for (k, equation) in making.equations(unknowns)? {
+                firmness[k].own = equation.row.of_unknown(k);
+                anew.insert(k, equation);
+            }
         }
-        let still = touched.into_iter().filter(|&k| is_soft(frame, k, system.matrix.diagonal(k)));
-        soft = still.map(|k| frame.roles.node(k)).collect();
+        soft = touched.into_iter().filter(|&k| firmness[k].is_soft()).map(|k| frame.roles.node(k)).collect();
     }
+    // At once: what stays is moved.
+    system.replace(&anew.into_iter().collect::<Vec<_>>());
     let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
     let stencils = making.stencils(of_holes)?;
     let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
     let equations = hole_equations(frame.mesh, &weak, frame.node_tris, frame.roles, Formulation::Variational);
-    let mut report = StarReport { size: stars.size, ..StarReport::default() };
-    making.outcomes.iter().for_each(|outcome| report.add(outcome, stars.order));
+    let mut report = StarReport { size: stars.size, choice: stars.choice, ..StarReport::default() };
+    making.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), stars.order));
     let used_stars = UsedStars::new(stars, 0, making.larger, BTreeMap::new());
-    Ok(Batched { system, equations, stars: report, used_stars })
+    Ok(Batched { system, firmness, equations, stars: report, used_stars })
 }
 
 /// What batches are made from, and what was met so far.
@@ -119,20 +130,16 @@ struct Making<'a> {
     rule: &'a Rule,
     larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that are mended
     sizes: Vec<u32>,                 // of the stars, 0 where not met yet
-    outcomes: Vec<StarOutcome>,
+    outcomes: Vec<Outcome>,
 }
 
 impl Making<'_> {
-    /// The equations of unknowns, ascending, each with the polynomials of the nodes around.
-    fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<Equation>, MfdmError> {
-        let stencils = self.stencils(nodes_around(self.frame, unknowns))?;
+    /// The equations of unknowns, ascending, each with its number.
+    fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<(usize, Equation)>, MfdmError> {
+        let stencils = self.stencils(nodes_around(self.frame, unknowns.iter().copied()))?;
         let setting: Setting = self.frame.with(&stencils);
         let weak = WeakForm::blended(&stencils, self.frame.fluxes, self.rule);
-        let pieces = map_pieces(0..unknowns.len(), PIECE, |piece| {
-            let mut maker = EquationMaker::new(&setting, &weak);
-            unknowns[piece].iter().map(|&k| maker.of(k)).collect::<Result<Vec<_>, _>>()
-        });
-        Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+        variational::equations(&setting, &weak, unknowns)
     }
 
     /// The stencils of nodes, ascending, mended ones as they are by now.
@@ -144,7 +151,7 @@ impl Making<'_> {
         stencils.replace(self.around.0, self.around.1, &mended.collect::<Vec<_>>());
         for node in nodes {
             self.sizes[node.index()] = stencils.of(node).nodes.len() as u32;
-            self.outcomes[node.index()] = stencils.outcome(node);
+            self.outcomes[node.index()] = Outcome::from(stencils.outcome(node));
         }
         Ok(stencils)
     }
@@ -196,9 +203,12 @@ mod tests {
             for batch in [37, 10_000] {
                 let found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");
                 assert_eq!(found.stars, stencils.report(), "order {order}, {batch} at a time");
-                assert_eq!(found.used_stars, stencils.used(larger.clone()));
+                assert_eq!(found.used_stars, UsedStars::new(stars, 0, larger.clone(), BTreeMap::new()));
                 assert_eq!(found.system.rhs, system.rhs);
                 assert_eq!(found.system.hole_columns, system.hole_columns);
+                for (k, firmness) in found.firmness.iter().enumerate() {
+                    assert_eq!(*firmness, Firmness::of(system.matrix.diagonal(k), &frame, roles.node(k)));
+                }
                 for k in 0..system.n() {
                     let row = |system: &LinearSystem| system.matrix.row(k).entries().collect::<Vec<_>>();
                     assert_eq!(row(&found.system), row(&system), "order {order}, equation {k}");

@@ -8,7 +8,6 @@ use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
-use crate::mend::mend;
 use crate::one_star::NodeStar;
 use crate::operator::Operator;
 use crate::params::SolveParams;
@@ -27,7 +26,6 @@ use crate::{galerkin, local, variational};
 use nmt_cloud::Nearest;
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{Mesh, NodeTris};
-use std::collections::BTreeMap;
 
 /// Gauss points that integrate a source that is not constant: exact to degree 4 for orders 1 and 2, to degree 6 above.
 const SOURCE_POINTS: [usize; 2] = [6, 12];
@@ -84,6 +82,7 @@ pub(crate) fn solve_discrete(
     let mesh = discrete.mesh;
     let (nodal, operator) = nodal_solution(discrete, params, None, observer)?;
     drop(operator);
+    observer(Event::Begun(Stage::Post));
     let [field] = recover(mesh, params, [&nodal.values], observer)?;
     Ok((nodal, field))
 }
@@ -110,16 +109,18 @@ pub(crate) fn nodal_solution(
             Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
         match from {
             Some(operator) => {
+                observer(Event::Begun(Stage::Assemble));
                 let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
                 operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
             }
-            None if is_batched(params) => assemble_in_batches(frame, around, params, &rule, observer),
+            None if is_mended(params) => assemble_in_batches(frame, around, params, &rule, observer),
             None => assemble_at_once(frame, around, params, &rule, observer),
         }
     });
     let Assembled { system, equations, stars, used_stars, smoothing, holds } = assembled?;
     observer(Event::Ended(Stage::Assemble));
 
+    observer(Event::Begun(Stage::Solve));
     let Nodal { values, constants, linear } =
         solve_system(&system, mesh.xy(), &equations, &roles, (params.solver, target), observer)?;
     let is_whole = is_mended(params) && roles.n_unknowns == mesh.cloud().n_interior();
@@ -178,7 +179,7 @@ impl Assembled {
     }
 }
 
-/// All equations from stars that are made and dropped batch by batch.
+/// The equations of hats on blends, from stars that are made and dropped batch by batch; soft nodes are mended, loose ones held.
 fn assemble_in_batches(
     frame: Frame,
     around: Around,
@@ -188,14 +189,13 @@ fn assemble_in_batches(
 ) -> Result<Assembled, MfdmError> {
     let stars = params.star_params(frame.mesh.cloud(), &around.surroundings.metric())?;
     let places = (around.surroundings, around.nearest);
-    // Stars are found along with the equations.
-    observer(Event::Ended(Stage::Stencils));
-    let Batched { mut system, equations, stars, used_stars } = batches::assemble(frame, places, stars, rule, observer)?;
-    let holds = steady(frame, places, params.order, &mut system);
+    let batched = batches::assemble(frame, places, stars, rule, observer)?;
+    let Batched { mut system, firmness, equations, stars, used_stars } = batched;
+    let holds = steady(frame, places, params.order, &mut system, &firmness);
     Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
 }
 
-/// All equations from all stencils.
+/// All other equations, from all stencils.
 fn assemble_at_once(
     frame: Frame,
     around: Around,
@@ -205,14 +205,11 @@ fn assemble_at_once(
 ) -> Result<Assembled, MfdmError> {
     let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
     let Around { surroundings, nearest, .. } = around;
-    let mut stencils = stencils_of_equations(around, roles, fluxes, params, kept(params), observer)?;
+    observer(Event::Begun(Stage::Stencils));
+    let stencils = stencils_of_equations(around, roles, fluxes, params, kept(params), observer)?;
     observer(Event::Ended(Stage::Stencils));
-    let mended = mended_system(frame, around, params, rule, &mut stencils)?;
-    let (mended, larger, holds) = match mended {
-        Some(Mended { system, larger, holds }) => (Some(system), larger, holds),
-        None => Default::default(),
-    };
-    let (stars, used_stars) = (stencils.report(), stencils.used(larger));
+    observer(Event::Begun(Stage::Assemble));
+    let (stars, used_stars) = (stencils.report(), stencils.used());
     let setting = frame.with(&stencils);
     let space = TrialSpace {
         kind: params.trial,
@@ -238,19 +235,16 @@ fn assemble_at_once(
             WeakForm::blended(of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
         }
     };
-    let system = match (mended, params.formulation, params.test) {
-        (Some(system), _, _) => system,
-        (None, Formulation::Local, _) => local::assemble(&setting)?,
-        (None, Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
-        (None, Formulation::Variational, Test::Hat) | (None, Formulation::Fem, _) => {
-            variational::assemble(&setting, &weak)?
-        }
+    let system = match (params.formulation, params.test) {
+        (Formulation::Local, _) => local::assemble(&setting)?,
+        (Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
+        (Formulation::Variational, Test::Hat) | (Formulation::Fem, _) => variational::assemble(&setting, &weak)?,
     };
     let equations = hole_equations(mesh, &weak, node_tris, roles, params.formulation);
     drop(weak);
     // Rows are the larger part of what is held; only smoothing needs them again.
     let stencils = (!interpolates(params)).then_some(stencils);
-    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds })
+    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds: Vec::new() })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -273,11 +267,19 @@ pub(crate) fn star_of_equations(
     }
     with_surroundings(mesh, |around| {
         let roles = roles(conditions, mesh, params);
-        let mut stencils = stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?;
-        let (rule, source_rule) = (params.rule()?, source_rule(params));
-        let frame =
-            Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-        mended_system(frame, around, params, &rule, &mut stencils)?;
+        let stencils = if is_mended(params) {
+            let (rule, source_rule) = (params.rule()?, source_rule(params));
+            let frame =
+                Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
+            let assembled = assemble_in_batches(frame, around, params, &rule, &mut |_| {})?;
+            let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
+            let mut own = Stencils::of_some((around.surroundings, around.nearest), stars, vec![node], |_| None);
+            let larger = assembled.used_stars.larger().get(&node).map(|size| (node, *size));
+            own.replace(around.surroundings, around.nearest, larger.as_slice());
+            own
+        } else {
+            stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?
+        };
         Ok(Some(NodeStar::in_stencils(mesh.cloud(), around.surroundings, &stencils, node)))
     })
 }
@@ -299,11 +301,6 @@ fn kept(params: &SolveParams) -> Kept {
         Formulation::Local if interpolates(params) => Kept::Laplacian,
         _ => Kept::Derivatives,
     }
-}
-
-/// Whether stars are made and dropped batch by batch: their rows are the larger part of what is held.
-fn is_batched(params: &SolveParams) -> bool {
-    is_mended(params) && params.order >= 3
 }
 
 fn roles(conditions: Vec<NodeCondition>, mesh: &Mesh, params: &SolveParams) -> Roles {
@@ -346,35 +343,6 @@ fn stencils_of_equations(
         stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
     }
     Ok(stencils)
-}
-
-/// A system whose soft nodes are mended.
-struct Mended {
-    system: LinearSystem,
-    /// Nodes in the stars that were enlarged.
-    larger: BTreeMap<NodeId, usize>,
-    holds: Vec<Hold>,
-}
-
-/// The system of hats on blends, with the stars of soft nodes mended; `None` for all other equations.
-fn mended_system(
-    frame: Frame,
-    around: Around,
-    params: &SolveParams,
-    rule: &Rule,
-    stencils: &mut Stencils,
-) -> Result<Option<Mended>, MfdmError> {
-    if !is_mended(params) {
-        return Ok(None);
-    }
-    let weak = WeakForm::blended(stencils, frame.fluxes, rule);
-    let mut system = variational::assemble(&frame.with(stencils), &weak)?;
-    drop(weak);
-    let around = (around.surroundings, around.nearest);
-    let unknowns = 0..system.n();
-    let larger = mend(frame, around, rule, stencils, &mut system, unknowns)?;
-    let holds = steady(frame, around, params.order, &mut system);
-    Ok(Some(Mended { system, larger, holds }))
 }
 
 /// The values of smoothing polynomials at their nodes, from the parameters.

@@ -29,8 +29,9 @@ pub(crate) fn hole_equations(
         for &t in ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]) {
             let element = Element::new(mesh, t);
             let of_one = ring.corners_of_one(mesh, t);
-            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| element.slopes[a][d]).sum());
-            weak.add(std::iter::once((&element, slope)), &mut gathered, &mut sum);
+            let slopes = element.slopes();
+            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
+            weak.add(&element, slope, &mut gathered, &mut sum);
         }
         let n_ones = |t: TriId| ring.corners_of_one(mesh, t).iter().filter(|one| **one).count() as f64;
         let integral = |t: &TriId| mesh.area(*t) * n_ones(*t) / 3.0;

@@ -2,7 +2,7 @@
 
 use crate::basis::{INVERSE, MAX_MONOMIALS, monomials, n_monomials, row};
 use crate::blend::barycentric_gradients;
-use nmt_geom::point::sub;
+use nmt_geom::point::{dot, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::Mesh;
 
@@ -13,27 +13,37 @@ pub(crate) struct Element {
     pub nodes: [NodeId; 3],
     pub corners: [Point; 3],
     pub area: f64,
-    /// Gradients of the hats of its nodes.
-    pub slopes: [[f64; 2]; 3],
 }
 
 impl Element {
     #[inline(always)]
     pub fn new(mesh: &Mesh, triangle: TriId) -> Self {
-        let corners = mesh.corners(triangle);
-        Self {
-            triangle,
-            nodes: mesh.tri_nodes()[triangle.index()],
-            corners,
-            area: mesh.area(triangle),
-            slopes: barycentric_gradients(corners),
+        let (nodes, corners) = (mesh.tri_nodes()[triangle.index()], mesh.corners(triangle));
+        Self { triangle, nodes, corners, area: mesh.area(triangle) }
+    }
+
+    /// Gradients of the hats of its nodes.
+    pub fn slopes(&self) -> [[f64; 2]; 3] {
+        barycentric_gradients(self.corners)
+    }
+
+    /// Place of one of its nodes.
+    #[inline(always)]
+    pub fn corner_of(&self, node: NodeId) -> usize {
+        if self.nodes[0] == node {
+            0
+        } else if self.nodes[1] == node {
+            1
+        } else {
+            2
         }
     }
 
-    /// Gradient of the hat of one of its nodes; 0 for any other.
+    /// ∫|∇v|² of the hat of the node in a corner: the square of the opposite side over four times the area.
     #[inline]
-    pub fn hat_slope(&self, node: NodeId) -> [f64; 2] {
-        self.nodes.iter().position(|n| *n == node).map_or([0.0; 2], |corner| self.slopes[corner])
+    pub fn hat_energy(&self, corner: usize) -> f64 {
+        let opposite = sub(self.corners[(corner + 2) % 3], self.corners[(corner + 1) % 3]);
+        dot(opposite, opposite) / (4.0 * self.area)
     }
 }
 
@@ -95,7 +105,7 @@ mod tests {
     use super::*;
     use crate::basis::MAX_ORDER;
     use crate::gauss::Rule;
-    use nmt_geom::point::{cross, dot};
+    use nmt_geom::point::cross;
 
     #[test]
     fn the_flow_through_the_sides_is_that_of_a_rule_that_is_exact() {
@@ -105,7 +115,6 @@ mod tests {
             nodes: [0, 1, 2].map(NodeId::of),
             corners,
             area: 0.5 * cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])),
-            slopes: barycentric_gradients(corners),
         };
         let rule = Rule::of(12).expect("a rule of twelve points"); // exact to degree 6
         let slope = [0.7, -1.3];
@@ -113,7 +122,7 @@ mod tests {
             let (mut by_points, mut by_sides) = ([0.0; MAX_MONOMIALS], [0.0; MAX_MONOMIALS]);
             let places = rule.points.iter().zip(&rule.weights).map(|(lambda, weight)| (*lambda, weight * element.area));
             let integrals = CornerIntegrals::<MAX_ORDER>::of_places(&element, a, places);
-            integrals.add_along(slope, dot(slope, element.slopes[a]), &mut by_points);
+            integrals.add_along(slope, dot(slope, element.slopes()[a]), &mut by_points);
             // λ_a is 0 on the third side.
             for (other, way) in [((a + 1) % 3, 1.0), ((a + 2) % 3, -1.0)] {
                 let side = sub(corners[other], corners[a]);

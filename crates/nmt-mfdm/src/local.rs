@@ -13,7 +13,8 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
     let Setting { frame: Frame { mesh, roles, source, .. }, stencils } = setting;
     // Only smoothing polynomials have Dirichlet rows, which are summed.
     let sum = || RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
-    LinearSystem::of_unknowns(roles, sum, |sum, k, system| {
+    let mut system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
+    system.extend(0..roles.n_unknowns, sum, |sum, k, system| -> Result<(), MfdmError> {
         let node = roles.node(k);
         if let Some(of_value) = dirichlet_row(setting, node, sum)? {
             system.push(&of_value);
@@ -25,5 +26,6 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
         let known = stencils.known_share(node, stencils.laplacian(node), mesh.xy());
         system.end(radius * radius * source.at(mesh.xy()[node.index()])? - known);
         Ok(())
-    })
+    })?;
+    Ok(system)
 }

@@ -10,11 +10,10 @@
 use crate::assembly::{Frame, Setting};
 use crate::error::MfdmError;
 use crate::gauss::Rule;
-use crate::parallel::map_chunks;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
 use crate::system::{LinearSystem, Role};
-use crate::variational::{EquationMaker, hat_energy};
+use crate::variational::{EquationMaker, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
@@ -22,7 +21,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Least share of the linear elements' own coefficient.
-pub(crate) const SOFT: f64 = 0.5;
+const SOFT: f64 = 0.5;
 
 /// Times that stars are enlarged, by half each time.
 pub(crate) const ROUNDS: usize = 3;
@@ -41,7 +40,8 @@ pub(crate) fn mend(
     among: Range<usize>,
 ) -> Result<BTreeMap<NodeId, usize>, MfdmError> {
     let (mut sizes, mut anew) = (BTreeMap::new(), BTreeMap::new());
-    let mut soft = soft_nodes(frame, system, among.clone());
+    let soft_unknowns = among.clone().filter(|&k| is_soft(frame, k, system.matrix.diagonal(k)));
+    let mut soft: Vec<NodeId> = soft_unknowns.map(|k| frame.roles.node(k)).collect();
     for _ in 0..ROUNDS {
         if soft.is_empty() {
             break;
@@ -67,27 +67,27 @@ pub(crate) fn mend(
     Ok(sizes)
 }
 
-/// The nodes among `unknowns` whose own coefficient is below [`SOFT`] of what linear elements have, ascending.
-pub(crate) fn soft_nodes(frame: Frame, system: &LinearSystem, unknowns: Range<usize>) -> Vec<NodeId> {
-    let soft = |piece: Range<usize>| {
-        let soft = piece.filter(|&k| is_soft(frame, k, system.matrix.diagonal(k)));
-        soft.map(|k| frame.roles.node(k)).collect::<Vec<_>>()
-    };
-    map_chunks(unknowns, soft).into_iter().flatten().collect()
+impl Firmness {
+    /// Whether the own coefficient is below half of what linear elements have.
+    pub fn is_soft(self) -> bool {
+        self.own < SOFT * self.energy
+    }
 }
 
 /// Whether an equation's own coefficient is below [`SOFT`] of what linear elements have.
-pub(crate) fn is_soft(frame: Frame, unknown: usize, own: f64) -> bool {
-    own < SOFT * hat_energy(frame.mesh, frame.node_tris, frame.roles.node(unknown))
+fn is_soft(frame: Frame, unknown: usize, own: f64) -> bool {
+    Firmness::of(own, &frame, frame.roles.node(unknown)).is_soft()
 }
 
 /// Nodes, ascending, whose polynomials enter the equations of `unknowns`: their own and those of the nodes around.
-pub(crate) fn nodes_around(frame: Frame, unknowns: &[usize]) -> Vec<NodeId> {
-    let triangles = unknowns.iter().flat_map(|&k| frame.node_tris.around(frame.roles.node(k)));
-    let mut nodes: Vec<NodeId> = triangles.flat_map(|t| frame.mesh.tri_nodes()[t.index()]).collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
+pub(crate) fn nodes_around(frame: Frame, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
+    let mut is_met = vec![false; frame.mesh.cloud().n_nodes()];
+    for k in unknowns {
+        for t in frame.node_tris.around(frame.roles.node(k)) {
+            frame.mesh.tri_nodes()[t.index()].iter().for_each(|node| is_met[node.index()] = true);
+        }
+    }
+    is_met.iter().enumerate().filter(|(_, is_met)| **is_met).map(|(node, _)| NodeId::of(node)).collect()
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.

@@ -4,17 +4,16 @@
 //! are those of the other problem too, their mended stars and what holds loose nodes included: of N nodes all but O(√N). The
 //! others, and those of boundary nodes that are unknown now, are made anew.
 
-use crate::assembly::{Frame, Setting};
+use crate::assembly::Frame;
 use crate::error::MfdmError;
 use crate::gauss::Rule;
 use crate::mend::{mend, nodes_around};
-use crate::parallel::map_chunks;
 use crate::solver::csr::Csr;
 use crate::steady::{Hold, holds};
 use crate::stencils::{StarParams, Stencils};
 use crate::surroundings::Surroundings;
-use crate::system::{Equation, LinearSystem};
-use crate::variational::EquationMaker;
+use crate::system::LinearSystem;
+use crate::variational::{self, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
@@ -49,7 +48,7 @@ impl Operator {
         let is_anew = |k: usize| k < n_boundary || self.is_beside[k - n_boundary];
         let anew: Vec<usize> = (0..n).filter(|&k| is_anew(k)).collect();
 
-        let nodes = nodes_around(frame, &anew);
+        let nodes = nodes_around(frame, anew.iter().copied());
         let mut stencils = Stencils::of_some(around, params, nodes.clone(), |_| None);
         let xy = frame.mesh.xy();
         nodes.iter().try_for_each(|node| stencils.require(node.index()..node.index() + 1, xy, 1))?;
@@ -57,7 +56,8 @@ impl Operator {
         stencils.replace(around.0, around.1, &mended.collect::<Vec<_>>());
 
         let mut system = LinearSystem::with_room(n, frame.roles.n_holes, self.matrix.n_entries());
-        let mut made = equations_of(&frame.with(&stencils), rule, &anew)?.into_iter().peekable();
+        let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
+        let mut made = variational::equations(&frame.with(&stencils), &weak, &anew)?.into_iter().peekable();
         for k in 0..n {
             match made.next_if(|(number, _)| *number == k) {
                 Some((_, equation)) => system.push(&equation),
@@ -70,21 +70,12 @@ impl Operator {
         // Equations taken over have what holds their nodes in them.
         let known = self.holds.iter().flat_map(|hold| hold.parts(frame.roles));
         let mut parts: Vec<_> = known.filter(|(k, _)| *k < n_boundary || self.is_beside[*k - n_boundary]).collect();
-        let further = holds(frame, around, params.order, &system, 0..n_boundary);
+        let firmness = |k: usize| Firmness::of(system.matrix.diagonal(k), &frame, frame.roles.node(k));
+        let further = holds(frame, around, params.order, &system, firmness, 0..n_boundary);
         parts.extend(further.iter().flat_map(|hold| hold.parts(frame.roles)));
         system.join(parts);
         Ok(system)
     }
-}
-
-/// The equations of unknowns, in their order, with their numbers.
-fn equations_of(setting: &Setting, rule: &Rule, unknowns: &[usize]) -> Result<Vec<(usize, Equation)>, MfdmError> {
-    let weak = WeakForm::blended(setting.stencils, setting.frame.fluxes, rule);
-    let pieces = map_chunks(0..unknowns.len(), |piece| {
-        let mut maker = EquationMaker::new(setting, &weak);
-        unknowns[piece].iter().map(|&k| Ok((k, maker.of(k)?))).collect::<Result<Vec<_>, MfdmError>>()
-    });
-    Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
 #[cfg(test)]
@@ -97,7 +88,6 @@ mod tests {
     use crate::steady::steady;
     use crate::system::{Dirichlet, NodeCondition, Roles};
     use crate::true_edges::visit_pieces;
-    use crate::variational;
     use nmt_cloud::{CloudParams, Section, generate};
     use nmt_curve::Outline;
     use nmt_tri::{Mesh, NodeTris};
@@ -110,7 +100,9 @@ mod tests {
         let mut system = variational::assemble(&frame.with(&stencils), &weak).expect("a system");
         let n = system.n();
         let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..n).expect("a system");
-        let holds = steady(frame, around, params.order, &mut system);
+        let firmness = |k: usize| Firmness::of(system.matrix.diagonal(k), &frame, frame.roles.node(k));
+        let firmness: Vec<_> = (0..n).map(firmness).collect();
+        let holds = steady(frame, around, params.order, &mut system, &firmness);
         let (matrix, is_beside) = (system.matrix.clone(), system.is_beside.clone());
         (system, Operator { matrix, is_beside, holds, larger })
     }

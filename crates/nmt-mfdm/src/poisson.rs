@@ -95,7 +95,7 @@ pub fn solve_poisson(
     solve_poisson_observed(problem, mesh, params, &mut |_| {})
 }
 
-/// [`solve_poisson`], telling `observer` the end of each stage, and within stages how far they are.
+/// [`solve_poisson`], telling `observer` the beginning and the end of each stage, and within stages how far they are.
 ///
 /// # Errors
 /// As [`solve_poisson`].

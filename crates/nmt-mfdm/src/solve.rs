@@ -17,7 +17,8 @@ use crate::warping::{NodalWarping, warping_params};
 use nmt_cloud::Section;
 use nmt_tri::Mesh;
 
-/// The stages that [`solve_observed`] and [`solve_estimated`] tell the end of, in order.
+/// The stages that [`solve_observed`] and [`solve_estimated`] tell the beginning and the end of, in order; the first two of the
+/// variational form take turns, batch by batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Stars and rows.
@@ -36,6 +37,8 @@ pub enum Stage {
 /// What [`solve_observed`] tells while it works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
+    /// A stage begins.
+    Begun(Stage),
     /// A stage has ended.
     Ended(Stage),
     /// Of the stage under way, so many nodes are done.
@@ -80,7 +83,7 @@ pub fn solve(problem: &TorsionProblem, mesh: &Mesh, params: &SolveParams) -> Res
     solve_observed(problem, mesh, params, &mut |_| {})
 }
 
-/// [`solve`], telling `observer` the end of each stage, and within stages how far they are.
+/// [`solve`], telling `observer` the beginning and the end of each stage, and within stages how far they are.
 ///
 /// # Errors
 /// As [`solve`].
@@ -118,8 +121,10 @@ pub fn solve_estimated(
     let is_same = of_warping == *params;
     let (nodal, operator) = nodal_solution(discrete(problem, mesh), params, None, observer)?;
     let operator = operator.filter(|_| is_same);
+    observer(Event::Begun(Stage::Estimate));
     let warping = NodalWarping::solve(mesh, section, &of_warping, operator, &mut within(observer));
     observer(Event::Ended(Stage::Estimate));
+    observer(Event::Begun(Stage::Post));
     let (field, warping) = match warping {
         Ok(warping) if is_same => {
             let [field, w] = recover(mesh, params, [&nodal.values, &warping.values], observer)?;
@@ -136,6 +141,7 @@ pub fn solve_estimated(
     };
     let solution = results(problem, mesh, nodal, field)?;
     observer(Event::Ended(Stage::Post));
+    observer(Event::Begun(Stage::Estimate));
     let estimate = warping.and_then(|warping| bounds(problem, mesh, section, &solution, &warping).map(Some));
     observer(Event::Ended(Stage::Estimate));
     Ok((solution, estimate))
@@ -156,10 +162,10 @@ fn discrete<'a>(problem: &TorsionProblem, mesh: &'a Mesh) -> Discrete<'a> {
     }
 }
 
-/// How far a part of a stage is, without the ends of its own stages.
+/// How far a part of a stage is, without its own stages.
 fn within(observer: &mut dyn FnMut(Event)) -> impl FnMut(Event) {
     |event| {
-        if !matches!(event, Event::Ended(_)) {
+        if !matches!(event, Event::Begun(_) | Event::Ended(_)) {
             observer(event)
         }
     }

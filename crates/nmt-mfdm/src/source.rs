@@ -47,7 +47,7 @@ impl Source<'_> {
     ) -> Result<f64, MfdmError> {
         let mut sum = 0.0;
         for element in around {
-            let corner = element.nodes.iter().position(|n| *n == node).unwrap_or(0);
+            let corner = element.corner_of(node);
             match self {
                 // ∫v is a third of the triangle's area.
                 Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * element.area / 3.0,

@@ -17,13 +17,13 @@
 //! 2.5e-4 and 1.9e-6 at 0.4, 2.0e-2 at 0.49 in order 2.
 
 use crate::assembly::Frame;
-use crate::mend::SOFT;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::parallel::map_chunks;
+use crate::solver::csr::Csr;
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
 use crate::system::{LinearSystem, Role, Roles, SplitRow};
-use crate::variational::hat_energy;
+use crate::variational::Firmness;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
 use std::ops::Range;
@@ -72,14 +72,15 @@ impl Hold {
     }
 }
 
-/// Adds the predictions of nodes that are hardly held to their equations; tells them.
+/// Adds the predictions of nodes that are hardly held to their equations, of which `firmness` is known; tells them.
 pub(crate) fn steady(
     frame: Frame,
     around: (&Surroundings, &Nearest),
     order: usize,
     system: &mut LinearSystem,
+    firmness: &[Firmness],
 ) -> Vec<Hold> {
-    let holds = holds(frame, around, order, system, 0..system.n());
+    let holds = holds(frame, around, order, system, |k| firmness[k], 0..system.n());
     system.join(holds.iter().flat_map(|hold| hold.parts(frame.roles)).collect());
     holds
 }
@@ -90,10 +91,11 @@ pub(crate) fn holds(
     around: (&Surroundings, &Nearest),
     order: usize,
     system: &LinearSystem,
+    firmness: impl Fn(usize) -> Firmness + Sync + Send,
     among: Range<usize>,
 ) -> Vec<Hold> {
     let mut predictor = Predictor::new(frame, around, order);
-    let loose = loose_nodes(frame, system, among).into_iter();
+    let loose = loose_nodes(&system.matrix, firmness, among).into_iter();
     let hold = |Loose { unknown, twin, energy, lacking }: Loose| {
         let strength = energy.min(REGULAR_ENERGY) + lacking;
         Some(Hold { strength, departure: predictor.departure(unknown, twin)? })
@@ -102,21 +104,20 @@ pub(crate) fn holds(
 }
 
 /// The nodes that are hardly held, ascending.
-fn loose_nodes(frame: Frame, system: &LinearSystem, among: Range<usize>) -> Vec<Loose> {
-    let energy = |k: usize| hat_energy(frame.mesh, frame.node_tris, frame.roles.node(k));
-    let (matrix, diagonal) = (&system.matrix, system.matrix.diagonals());
+fn loose_nodes(matrix: &Csr, firmness: impl Fn(usize) -> Firmness + Sync + Send, among: Range<usize>) -> Vec<Loose> {
     let pieces = map_chunks(among, |piece| {
         let mut loose: Vec<Loose> = Vec::new();
         for k in piece {
-            let (own, own_energy) = (diagonal[k], energy(k));
-            if own < SOFT * own_energy {
+            let firm = firmness(k);
+            let Firmness { own, energy: own_energy } = firm;
+            if firm.is_soft() {
                 loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });
             }
             for (j, there) in matrix.row(k).entries() {
                 // The two rows may differ much, but two nodes could cancel only where the larger of the coefficients beside
                 // the diagonal is large: from its row the pair is seen. A negative coefficient of its own makes a node loose
                 // without a twin.
-                let other = diagonal[j];
+                let Firmness { own: other, energy: other_energy } = firmness(j);
                 if 2.0 * there * there < own * other || own.min(other) <= 0.0 || j == k {
                     continue;
                 }
@@ -124,7 +125,7 @@ fn loose_nodes(frame: Frame, system: &LinearSystem, among: Range<usize>) -> Vec<
                 if 2.0 * there * back < own * other {
                     continue;
                 }
-                let (other_energy, determinant) = (energy(j), own * other - there * back);
+                let determinant = own * other - there * back;
                 if determinant < LOOSE_PAIR * own_energy * other_energy {
                     let lacking = (-least_eigenvalue(own + other, determinant)).max(0.0);
                     loose.push(Loose { unknown: k, twin: Some(j), energy: own_energy, lacking });

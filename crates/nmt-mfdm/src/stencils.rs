@@ -99,11 +99,9 @@ pub struct Stencils {
     size: usize, // nodes in most stars
     metric: Metric,
     of: Numbers,
-    starts: Vec<usize>, // first star entry of each node, shape (n,)
-    sizes: Vec<u32>,    // nodes in each star, shape (n,)
+    stars: Vec<Star>,   // shape (n,)
     nodes: Vec<NodeId>, // star after star, each ascending; those of another size than most at the end, their first ones left
     rows: Vec<f64>,     // for a star of m nodes, its rows of m, in scaled coordinates
-    radii: Vec<f64>,    // radius of each star, user's length unit
     outcomes: Vec<Outcome>,
     known: BTreeMap<NodeId, KnownSlopes>, // of nodes whose gradient is known in part
 }
@@ -117,9 +115,17 @@ impl Kept {
     }
 }
 
+/// Where a star is, and how large.
+#[derive(Clone, Copy, Debug)]
+struct Star {
+    start: usize, // its first node; its rows begin where so many rows' worth of nodes do
+    size: u32,    // nodes in it
+    radius: f64,  // user's length unit
+}
+
 /// [`StarOutcome`] in 16 bytes.
 #[derive(Clone, Copy, Debug, Default)]
-struct Outcome {
+pub(crate) struct Outcome {
     condition: f64,
     hidden: u32,
     order: u8,
@@ -146,8 +152,7 @@ struct Piece<'a> {
     first: usize, // place of its first node
     nodes: &'a mut [NodeId],
     rows: &'a mut [f64],
-    sizes: &'a mut [u32],
-    radii: &'a mut [f64],
+    stars: &'a mut [Star],
     outcomes: &'a mut [Outcome],
 }
 
@@ -169,21 +174,34 @@ struct Other {
 #[derive(Clone, Debug)]
 enum Numbers {
     Consecutive(Range<usize>),
-    Some(Vec<NodeId>), // ascending
+    Some {
+        nodes: Vec<NodeId>, // ascending
+        first: usize,       // of them
+        places: Vec<u32>,   // of each node from the first to the last; beyond the last place where a node has none
+    },
 }
 
 impl Numbers {
+    /// The given nodes, ascending.
+    fn some(nodes: Vec<NodeId>) -> Self {
+        let first = nodes.first().map_or(0, |node| node.index());
+        let end = nodes.last().map_or(0, |node| node.index() + 1);
+        let mut places = vec![u32::MAX; end - first];
+        (0..).zip(&nodes).for_each(|(place, node)| places[node.index() - first] = place);
+        Self::Some { nodes, first, places }
+    }
+
     fn len(&self) -> usize {
         match self {
             Self::Consecutive(range) => range.len(),
-            Self::Some(nodes) => nodes.len(),
+            Self::Some { nodes, .. } => nodes.len(),
         }
     }
 
     fn node(&self, place: usize) -> NodeId {
         match self {
             Self::Consecutive(range) => NodeId::of(range.start + place),
-            Self::Some(nodes) => nodes[place],
+            Self::Some { nodes, .. } => nodes[place],
         }
     }
 
@@ -192,7 +210,9 @@ impl Numbers {
     fn place(&self, node: NodeId) -> usize {
         match self {
             Self::Consecutive(range) => node.index().wrapping_sub(range.start),
-            Self::Some(nodes) => nodes.binary_search(&node).unwrap_or(usize::MAX),
+            Self::Some { first, places, .. } => {
+                places.get(node.index().wrapping_sub(*first)).map_or(usize::MAX, |place| *place as usize)
+            }
         }
     }
 }
@@ -256,7 +276,7 @@ impl Stencils {
         nodes: Vec<NodeId>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
     ) -> Self {
-        Self::of_numbers(around, params, Kept::Derivatives, Numbers::Some(nodes), known, &mut |_| {})
+        Self::of_numbers(around, params, Kept::Derivatives, Numbers::some(nodes), known, &mut |_| {})
     }
 
     fn of_numbers(
@@ -273,36 +293,25 @@ impl Stencils {
         let n_rows = all.n_rows();
         all.nodes = vec![NodeId(0); n * all.size];
         all.rows = vec![0.0; n * n_rows * all.size];
-        all.starts = (0..n).map(|k| k * params.size).collect();
-        all.sizes = vec![0; n];
-        all.radii = vec![0.0; n];
+        all.stars = (0..n).map(|k| Star { start: k * params.size, size: 0, radius: 0.0 }).collect();
         all.outcomes = vec![Outcome::default(); n];
         let size = all.size.max(1);
         let mut pieces = (0..n)
             .step_by(PIECE)
             .zip(all.nodes.chunks_mut(PIECE * size))
             .zip(all.rows.chunks_mut(PIECE * size * n_rows))
-            .zip(all.sizes.chunks_mut(PIECE))
-            .zip(all.radii.chunks_mut(PIECE))
+            .zip(all.stars.chunks_mut(PIECE))
             .zip(all.outcomes.chunks_mut(PIECE))
-            .map(|(((((first, nodes), rows), sizes), radii), outcomes)| Piece {
-                first,
-                nodes,
-                rows,
-                sizes,
-                radii,
-                outcomes,
-            });
+            .map(|((((first, nodes), rows), stars), outcomes)| Piece { first, nodes, rows, stars, outcomes });
         let of = &all.of;
         let fill = |piece: Piece| {
             let mut finder = SoundStars::new(surroundings, nearest, params.choice);
-            let nodes = (piece.first..piece.first + piece.sizes.len()).map(|place| of.node(place));
+            let nodes = (piece.first..piece.first + piece.stars.len()).map(|place| of.node(place));
             let known: BTreeMap<_, _> = nodes.clone().filter_map(|node| Some((node, known(node)?))).collect();
             let demand = |node: NodeId| demand_of(params, surroundings, node, known.get(&node), params.size);
             let (mut k, mut others) = (0, Vec::new());
             finder.each(nodes, demand, kept.wanted(), |star| {
-                piece.sizes[k] = star.nodes.len() as u32;
-                piece.radii[k] = star.radius;
+                (piece.stars[k].size, piece.stars[k].radius) = (star.nodes.len() as u32, star.radius);
                 piece.outcomes[k] = Outcome::from(star.outcome);
                 if star.nodes.len() == size {
                     piece.nodes[k * size..(k + 1) * size].copy_from_slice(star.nodes);
@@ -345,8 +354,7 @@ impl Stencils {
     /// Gives the node at a place another star; that it had is left.
     fn append(&mut self, place: usize, nodes: &[NodeId], rows: &[f64]) {
         // Rows begin where nodes do.
-        self.starts[place] = self.nodes.len();
-        self.sizes[place] = nodes.len() as u32;
+        (self.stars[place].start, self.stars[place].size) = (self.nodes.len(), nodes.len() as u32);
         self.nodes.extend(nodes);
         self.rows.extend(rows);
     }
@@ -366,7 +374,7 @@ impl Stencils {
 
     /// Half as many nodes again as the star of `node` has.
     pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
-        half_as_many_again(self.sizes[self.of.place(node)])
+        half_as_many_again(self.stars[self.of.place(node)].size)
     }
 
     /// Gives nodes other stars, of the sizes told at least, each sound as those of [`Self::new`] are.
@@ -376,7 +384,7 @@ impl Stencils {
             let k = self.of.place(node);
             let demand = demand_of(self.params, surroundings, node, self.known.get(&node), size);
             let star = finder.one(node, demand, self.kept.wanted());
-            self.radii[k] = star.radius;
+            self.stars[k].radius = star.radius;
             self.outcomes[k] = Outcome::from(StarOutcome { enlarged: true, ..star.outcome });
             self.append(k, star.nodes, star.values);
         }
@@ -386,9 +394,7 @@ impl Stencils {
     pub(crate) fn constants(n_nodes: usize) -> Self {
         let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain());
         stencils.of = Numbers::Consecutive(0..n_nodes);
-        stencils.starts = vec![0; n_nodes];
-        stencils.sizes = vec![0; n_nodes];
-        stencils.radii = vec![1.0; n_nodes];
+        stencils.stars = vec![Star { start: 0, size: 0, radius: 1.0 }; n_nodes];
         stencils
     }
 
@@ -418,23 +424,21 @@ impl Stencils {
             size: params.size,
             metric,
             of: Numbers::Consecutive(0..0),
-            starts: Vec::new(),
-            sizes: Vec::new(),
+            stars: Vec::new(),
             nodes: Vec::new(),
             rows: Vec::new(),
-            radii: Vec::new(),
             outcomes: Vec::new(),
             known: BTreeMap::new(),
         }
     }
 
-    /// How to find these stars again, of which `larger` were enlarged.
-    pub(crate) fn used(&self, larger: BTreeMap<NodeId, usize>) -> UsedStars {
+    /// How to find these stars again.
+    pub(crate) fn used(&self) -> UsedStars {
         if self.params.order == 0 {
             return UsedStars::default();
         }
         let first = if self.of.len() > 0 { self.of.node(0).index() } else { 0 };
-        UsedStars::new(self.params, first, larger, self.known.clone())
+        UsedStars::new(self.params, first, BTreeMap::new(), self.known.clone())
     }
 
     /// The metric of their coordinates.
@@ -453,13 +457,14 @@ impl Stencils {
     }
 
     /// The stencil of a node of the range.
+    #[inline]
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
-        let k = self.of.place(node);
-        let star = self.starts[k]..self.starts[k] + self.sizes[k] as usize;
+        let Star { start, size, radius } = self.stars[self.of.place(node)];
+        let star = start..start + size as usize;
         let n_rows = self.n_rows();
         Stencil {
             nodes: &self.nodes[star.clone()],
-            radius: self.radii[k],
+            radius,
             first_row: self.params.first_row(),
             rows: &self.rows[n_rows * star.start..n_rows * star.end],
         }

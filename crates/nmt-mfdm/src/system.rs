@@ -268,37 +268,42 @@ impl LinearSystem {
         Ok(system)
     }
 
-    /// Collects the equations of all unknowns, on all cores; few are held beside the system. `equation` appends that of an
-    /// unknown, with the help of a `worker`, of which there is one a thread.
+    /// Appends the equations of consecutive unknowns, on all cores; few are held beside the system. `equation` appends that of
+    /// an unknown, with the help of a `worker`, of which there are no more than threads; what it tells of it comes back in order.
     ///
     /// # Errors
     /// The first that an equation has.
-    pub fn of_unknowns<W: Send>(
-        roles: &Roles,
+    pub fn extend<W: Send, T: Send>(
+        &mut self,
+        unknowns: Range<usize>,
         worker: impl Fn() -> W + Sync + Send,
-        equation: impl Fn(&mut W, usize, &mut Self) -> Result<(), MfdmError> + Sync + Send,
-    ) -> Result<Self, MfdmError> {
-        let empty = || Self::new(roles.n_unknowns, roles.n_holes);
-        let (workers, mut system) = (Pool::new(worker), Ok(empty()));
-        let work = |piece: Range<usize>, (room, outcome): &mut (Self, Result<(), MfdmError>)| {
+        equation: impl Fn(&mut W, usize, &mut Self) -> Result<T, MfdmError> + Sync + Send,
+    ) -> Result<Vec<T>, MfdmError> {
+        let (n, n_holes) = (self.matrix.n_columns(), self.hole_columns.len());
+        let workers = Pool::new(worker);
+        let work = |piece: Range<usize>, (room, told): &mut (Self, Result<Vec<T>, MfdmError>)| {
             room.clear();
-            *outcome = workers.with(|worker| piece.clone().try_for_each(|k| equation(worker, k, room)));
+            *told = workers.with(|worker| piece.map(|k| equation(worker, k, room)).collect());
         };
+        let mut all = Ok(Vec::with_capacity(unknowns.len()));
         take_from_rooms(
-            0..roles.n_unknowns,
+            unknowns,
             CHUNK,
-            || (empty(), Ok(())),
+            || (Self::new(n, n_holes), Ok(Vec::new())),
             work,
-            |(room, outcome)| {
-                if let Ok(so_far) = &mut system {
-                    match std::mem::replace(outcome, Ok(())) {
-                        Ok(()) => so_far.append(room),
-                        Err(error) => system = Err(error),
+            |(room, told)| {
+                let told = std::mem::replace(told, Ok(Vec::new()));
+                match (&mut all, told) {
+                    (Ok(all), Ok(told)) => {
+                        all.extend(told);
+                        self.append(room);
                     }
+                    (Ok(_), Err(error)) => all = Err(error),
+                    (Err(_), _) => {}
                 }
             },
         );
-        system
+        all
     }
 
     /// Makes it empty, with the room it has.

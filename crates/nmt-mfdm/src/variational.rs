@@ -3,16 +3,49 @@
 use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::element::Element;
 use crate::error::MfdmError;
+use crate::parallel::{Pool, map_chunks};
 use crate::system::{Equation, LinearSystem, RowSum};
 use crate::weak::{Gathered, WeakForm};
-use nmt_geom::point::{cross, dot, sub};
-use nmt_geom::{NodeId, TriId};
-use nmt_tri::{Mesh, NodeTris};
+use nmt_geom::NodeId;
+use std::ops::Range;
 
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
+    let roles = setting.frame.roles;
+    let mut system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
+    append(setting, weak, 0..roles.n_unknowns, &mut system)?;
+    Ok(system)
+}
+
+/// Appends the equations of `unknowns`; tells how firmly each holds its node.
+///
+/// # Errors
+/// As [`EquationMaker::of`].
+pub(crate) fn append(
+    setting: &Setting,
+    weak: &WeakForm,
+    unknowns: Range<usize>,
+    system: &mut LinearSystem,
+) -> Result<Vec<Firmness>, MfdmError> {
     let maker = || EquationMaker::new(setting, weak);
-    LinearSystem::of_unknowns(setting.frame.roles, maker, |maker, k, system| maker.append(k, system))
+    system.extend(unknowns, maker, |maker, k, system| maker.append(k, system))
+}
+
+/// The equations of `unknowns`, each with its number.
+///
+/// # Errors
+/// As [`EquationMaker::of`].
+pub(crate) fn equations(
+    setting: &Setting,
+    weak: &WeakForm,
+    unknowns: &[usize],
+) -> Result<Vec<(usize, Equation)>, MfdmError> {
+    let makers = Pool::new(|| EquationMaker::new(setting, weak));
+    let pieces = map_chunks(0..unknowns.len(), |piece| {
+        makers
+            .with(|maker| unknowns[piece].iter().map(|&k| Ok((k, maker.of(k)?))).collect::<Result<Vec<_>, MfdmError>>())
+    });
+    Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
 /// Makes equations; one a thread, with room to be used again.
@@ -43,21 +76,29 @@ impl<'a> EquationMaker<'a> {
         Ok(Equation { row: self.sum.take(self.setting.frame.roles), rhs })
     }
 
-    /// Appends the equation of unknown `k`.
+    /// Appends the equation of unknown `k`; tells how firmly it holds its node.
     ///
     /// # Errors
     /// As [`Self::of`].
-    fn append(&mut self, k: usize, system: &mut LinearSystem) -> Result<(), MfdmError> {
+    fn append(&mut self, k: usize, system: &mut LinearSystem) -> Result<Firmness, MfdmError> {
         let roles = self.setting.frame.roles;
         let node = roles.node(k);
         if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
+            let own = of_value.row.of_unknown(k);
             system.push(&of_value);
-            return Ok(());
+            return Ok(Firmness { own, energy: 0.0 });
         }
         let rhs = self.sum_up(node)?;
-        self.sum.drain(|node, coefficient| system.add(roles.of(node), coefficient));
+        let mut own = 0.0;
+        self.sum.drain(|other, coefficient| {
+            if other == node {
+                own = coefficient;
+            }
+            system.add(roles.of(other), coefficient);
+        });
         system.end(rhs);
-        Ok(())
+        let energy = self.around.iter().map(|element| element.hat_energy(element.corner_of(node))).sum();
+        Ok(Firmness { own, energy })
     }
 
     /// Sums up the left side of the equation with a node's hat; its right side.
@@ -65,28 +106,24 @@ impl<'a> EquationMaker<'a> {
         let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
         self.around.clear();
         self.around.extend(node_tris.around(node).iter().map(|&t| Element::new(mesh, t)));
-        let slopes = self.around.iter().map(|element| (element, element.hat_slope(node)));
-        self.weak.add(slopes, &mut self.gathered, &mut self.sum);
+        self.weak.add_hat(node, &self.around, &mut self.gathered, &mut self.sum);
         source.with_hat(mesh, source_rule, fluxes, node, &self.around)
     }
 }
 
-/// ∫|∇v|² of a node's hat: over a triangle the square of the opposite side over four times the area.
-pub(crate) fn hat_energy(mesh: &Mesh, node_tris: &NodeTris, node: NodeId) -> f64 {
-    let at = mesh.xy()[node.index()];
-    let of_triangle = |t: &TriId| {
-        let [a, b, c] = mesh.tri_nodes()[t.index()];
-        // Counter-clockwise after the node.
-        let others = if a == node {
-            [b, c]
-        } else if b == node {
-            [c, a]
-        } else {
-            [a, b]
-        };
-        let [s, t] = others.map(|other| sub(mesh.xy()[other.index()], at));
-        let opposite = sub(t, s);
-        dot(opposite, opposite) / (2.0 * cross(s, t))
-    };
-    node_tris.around(node).iter().map(of_triangle).sum()
+/// How firmly an equation holds its node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Firmness {
+    /// The coefficient of the node itself.
+    pub own: f64,
+    /// That of linear elements: ∫|∇v|² of the node's hat.
+    pub energy: f64,
+}
+
+impl Firmness {
+    /// Of an equation whose coefficient of its own node is `own`.
+    pub fn of(own: f64, frame: &Frame, node: NodeId) -> Self {
+        let elements = frame.node_tris.around(node).iter().map(|&t| Element::new(frame.mesh, t));
+        Self { own, energy: elements.map(|element| element.hat_energy(element.corner_of(node))).sum() }
+    }
 }

@@ -16,7 +16,6 @@ use crate::true_edges::of_triangle;
 use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, barycentric};
-use std::array::from_fn;
 
 /// What a nodal polynomial contributes by its derivatives at the node.
 type Moments = [f64; MAX_MONOMIALS];
@@ -50,11 +49,26 @@ struct Integrals {
 pub(crate) struct Gathered {
     nodes: Vec<NodeId>, // whose polynomials enter
     moments: Vec<Moments>,
-    of_star: Vec<f64>, // of one of these nodes
+    spokes: Vec<Spoke>, // from the node of a hat, in slot 0, to the others; shape (n - 1,)
+    of_star: Vec<f64>,  // of one of these nodes
+}
+
+/// The side between the node of a hat and a node around it.
+struct Spoke {
+    side: [f64; 2],
+    /// Flow through it along the gradients of the hat on both sides of it.
+    flow: f64,
 }
 
 impl Gathered {
+    fn clear(&mut self) {
+        self.nodes.clear();
+        self.moments.clear();
+        self.spokes.clear();
+    }
+
     /// Place of the moments of a node, which are 0 at first.
+    #[inline(always)]
     fn slot(&mut self, node: NodeId) -> usize {
         // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
         self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
@@ -64,12 +78,22 @@ impl Gathered {
         })
     }
 
-    /// Adds what flows along a constant g through the side from the node in slot `from` to that in `to`: ∫(g·n)u, where u
-    /// blends the polynomials of the two.
+    /// As [`Self::slot`] for a node that `side` leads to from that of the hat, adding to the flow through the side.
     #[inline(always)]
-    fn add_side<const P: usize>(&mut self, g: [f64; 2], side: [f64; 2], [from, to]: [usize; 2]) {
+    fn slot_at(&mut self, node: NodeId, side: [f64; 2], flow: f64) -> usize {
+        let slot = self.slot(node);
+        match self.spokes.get_mut(slot - 1) {
+            Some(spoke) => spoke.flow += flow,
+            None => self.spokes.push(Spoke { side, flow }),
+        }
+        slot
+    }
+
+    /// Adds what flows through the side from the node in slot `from` to that in `to`: `flow` times the mean of u, which blends
+    /// the polynomials of the two, along it.
+    #[inline(always)]
+    fn add_side<const P: usize>(&mut self, flow: f64, side: [f64; 2], [from, to]: [usize; 2]) {
         let means = side_means::<P>(side);
-        let flow = cross(g, side);
         let mut way_back = flow;
         for d in 0..P + 1 {
             for m in (0..d + 1).map(|b| row(d - b, b)) {
@@ -126,93 +150,149 @@ impl<'a> WeakForm<'a> {
         Ok(Self { fluxes, rule, degree: rule.degree(), trial })
     }
 
-    /// Adds ∫∇F·∇v for the v whose constant gradient is told with each element: the row of coefficients of the nodal values.
-    pub fn add<'e>(
-        &self,
-        elements: impl Iterator<Item = (&'e Element, [f64; 2])>,
-        gathered: &mut Gathered,
-        sum: &mut RowSum,
-    ) {
+    /// Adds ∫∇F·g over an element, g constant: the row of coefficients of the nodal values.
+    pub fn add(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered, sum: &mut RowSum) {
         match &self.trial {
             TrialGradients::Blended(stencils) => match stencils.order() {
                 // Loops of known length take half the time.
-                0 => self.add_blended::<0>(stencils, elements, gathered, sum),
-                1 => self.add_blended::<1>(stencils, elements, gathered, sum),
-                2 => self.add_blended::<2>(stencils, elements, gathered, sum),
-                3 => self.add_blended::<3>(stencils, elements, gathered, sum),
-                _ => self.add_blended::<MAX_ORDER>(stencils, elements, gathered, sum),
+                0 => self.add_blended::<0>(stencils, element, g, gathered, sum),
+                1 => self.add_blended::<1>(stencils, element, g, gathered, sum),
+                2 => self.add_blended::<2>(stencils, element, g, gathered, sum),
+                3 => self.add_blended::<3>(stencils, element, g, gathered, sum),
+                _ => self.add_blended::<MAX_ORDER>(stencils, element, g, gathered, sum),
+            },
+            TrialGradients::Integrated(integrals) => add_integrated(integrals, element, g, sum),
+        }
+    }
+
+    /// Adds ∫∇F·∇v of the hat v of `node`, `around` which these elements are.
+    pub fn add_hat(&self, node: NodeId, around: &[Element], gathered: &mut Gathered, sum: &mut RowSum) {
+        match &self.trial {
+            TrialGradients::Blended(stencils) => match stencils.order() {
+                0 => self.add_blended_hat::<0>(stencils, node, around, gathered, sum),
+                1 => self.add_blended_hat::<1>(stencils, node, around, gathered, sum),
+                2 => self.add_blended_hat::<2>(stencils, node, around, gathered, sum),
+                3 => self.add_blended_hat::<3>(stencils, node, around, gathered, sum),
+                _ => self.add_blended_hat::<MAX_ORDER>(stencils, node, around, gathered, sum),
             },
             TrialGradients::Integrated(integrals) => {
-                for (element, slope) in elements {
-                    let Integrals { nodes, by_x, by_y } = &integrals[element.triangle.index()];
-                    for (k, &node) in nodes.iter().enumerate() {
-                        sum.add(node, slope[0] * by_x[k] + slope[1] * by_y[k]);
-                    }
-                }
+                around.iter().for_each(|e| add_integrated(integrals, e, e.slopes()[e.corner_of(node)], sum));
             }
         }
     }
 
-    fn add_blended<'e, const P: usize>(
+    fn add_blended<const P: usize>(
         &self,
         stencils: &Stencils,
-        elements: impl Iterator<Item = (&'e Element, [f64; 2])>,
+        element: &Element,
+        g: [f64; 2],
         gathered: &mut Gathered,
         sum: &mut RowSum,
     ) {
-        gathered.nodes.clear();
-        gathered.moments.clear();
-        let is_exact = self.degree >= P;
-        for (element, slope) in elements {
-            let slots = element.nodes.map(|node| gathered.slot(node));
-            if is_exact {
-                // ∫∇u·g over a triangle is what flows along g through its sides.
-                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                    let side = sub(element.corners[b], element.corners[a]);
-                    gathered.add_side::<P>(slope, side, [slots[a], slots[b]]);
-                }
-            }
-            let slivers = of_triangle(&self.fluxes.slivers, element.triangle);
-            if is_exact && slivers.is_empty() {
-                continue;
-            }
-            let points = self.rule.points.iter().zip(&self.rule.weights);
-            let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
-            let beyond = slivers.iter().map(|s| (barycentric(element.corners, s.at), s.weight));
-            for (a, slot) in slots.into_iter().enumerate() {
-                let places = points.clone().filter(|_| !is_exact).chain(beyond.clone());
-                let along = dot(slope, element.slopes[a]);
-                let integrals = CornerIntegrals::<P>::of_places(element, a, places);
-                integrals.add_along(slope, along, &mut gathered.moments[slot]);
+        gathered.clear();
+        let slots = element.nodes.map(|node| gathered.slot(node));
+        if self.is_exact::<P>() {
+            // ∫∇u·g over a triangle is what flows along g through its sides.
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let side = sub(element.corners[b], element.corners[a]);
+                gathered.add_side::<P>(cross(g, side), side, [slots[a], slots[b]]);
             }
         }
-        for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
-            if stencils.interpolates() {
-                sum.add(node, moments[0]);
+        self.add_places::<P>(element, g, slots, gathered);
+        spread::<P>(stencils, gathered, sum);
+    }
+
+    fn add_blended_hat<const P: usize>(
+        &self,
+        stencils: &Stencils,
+        node: NodeId,
+        around: &[Element],
+        gathered: &mut Gathered,
+        sum: &mut RowSum,
+    ) {
+        gathered.clear();
+        let own = gathered.slot(node);
+        for element in around {
+            let corner = element.corner_of(node);
+            let [at, from, to] = [0, 1, 2].map(|next| element.corners[(corner + next) % 3]);
+            let (opposite, factor) = (sub(to, from), -0.5 / element.area);
+            // The gradient of the hat is normal to the opposite side, and 1 over the height.
+            let flow = |side: [f64; 2]| factor * dot(opposite, side);
+            let (out, back) = (sub(from, at), sub(to, at));
+            let [next, last] = [1, 2].map(|next| element.nodes[(corner + next) % 3]);
+            let slots = [gathered.slot_at(next, out, flow(out)), gathered.slot_at(last, back, -flow(back))];
+            if self.is_exact::<P>() {
+                gathered.add_side::<P>(flow(opposite), opposite, slots);
             }
-            let stencil = stencils.of(node);
-            // Rows are those of scaled coordinates.
-            let scale = stencils.metric().stretch().map(|stretch| stretch / stencil.radius);
-            let mut powers = [1.0; MAX_MONOMIALS];
-            for degree in 1..=P {
-                (0..degree).for_each(|b| powers[row(degree - b, b)] = scale[0] * powers[row(degree - 1 - b, b)]);
-                powers[row(0, degree)] = scale[1] * powers[row(0, degree - 1)];
+            let mut of_corners = [own; 3];
+            (of_corners[(corner + 1) % 3], of_corners[(corner + 2) % 3]) = (slots[0], slots[1]);
+            if !self.is_exact::<P>() || !of_triangle(&self.fluxes.slivers, element.triangle).is_empty() {
+                self.add_places::<P>(element, element.slopes()[corner], of_corners, gathered);
             }
-            let factors: [f64; MAX_MONOMIALS] = from_fn(|m| moments[m] * powers[m]);
-            let factors = &factors[stencil.first_row()..n_monomials(P)];
-            if let Ok(nodes) = <&[NodeId; USUAL]>::try_from(stencil.nodes) {
-                let of_star = combined::<USUAL>(stencil.rows(), factors);
-                (0..USUAL).for_each(|i| sum.add(nodes[i], of_star[i]));
-                continue;
-            }
-            let of_star = &mut gathered.of_star;
-            of_star.clear();
-            of_star.resize(stencil.nodes.len(), 0.0);
-            for (m, factor) in (stencil.first_row()..).zip(factors) {
-                of_star.iter_mut().zip(stencil.row(m)).for_each(|(total, coefficient)| *total += factor * coefficient);
-            }
-            stencil.nodes.iter().zip(of_star.iter()).for_each(|(&other, &total)| sum.add(other, total));
         }
+        if self.is_exact::<P>() {
+            for k in 0..gathered.spokes.len() {
+                let Spoke { side, flow } = gathered.spokes[k];
+                gathered.add_side::<P>(flow, side, [own, k + 1]);
+            }
+        }
+        spread::<P>(stencils, gathered, sum);
+    }
+
+    /// Whether the rule integrates the blend exactly, as the sides do.
+    fn is_exact<const P: usize>(&self) -> bool {
+        self.degree >= P
+    }
+
+    /// Adds what the rule integrates, where it is not exact, and what lies beyond an element's segments.
+    fn add_places<const P: usize>(&self, element: &Element, g: [f64; 2], slots: [usize; 3], gathered: &mut Gathered) {
+        let points = self.rule.points.iter().zip(&self.rule.weights).filter(|_| !self.is_exact::<P>());
+        let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
+        let slivers = of_triangle(&self.fluxes.slivers, element.triangle).iter();
+        let beyond = slivers.map(|sample| (barycentric(element.corners, sample.at), sample.weight));
+        let slopes = element.slopes();
+        for (a, slot) in slots.into_iter().enumerate() {
+            let integrals = CornerIntegrals::<P>::of_places(element, a, points.clone().chain(beyond.clone()));
+            integrals.add_along(g, dot(g, slopes[a]), &mut gathered.moments[slot]);
+        }
+    }
+}
+
+fn add_integrated(integrals: &[Integrals], element: &Element, g: [f64; 2], sum: &mut RowSum) {
+    let Integrals { nodes, by_x, by_y } = &integrals[element.triangle.index()];
+    for (k, &node) in nodes.iter().enumerate() {
+        sum.add(node, g[0] * by_x[k] + g[1] * by_y[k]);
+    }
+}
+
+/// Adds what the polynomials of the nodes gathered make of the nodal values.
+fn spread<const P: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mut RowSum) {
+    for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
+        if stencils.interpolates() {
+            sum.add(node, moments[0]);
+        }
+        let stencil = stencils.of(node);
+        // Rows are those of scaled coordinates.
+        let scale = stencils.metric().stretch().map(|stretch| stretch / stencil.radius);
+        let mut powers = [1.0; MAX_MONOMIALS];
+        for degree in 1..=P {
+            (0..degree).for_each(|b| powers[row(degree - b, b)] = scale[0] * powers[row(degree - 1 - b, b)]);
+            powers[row(0, degree)] = scale[1] * powers[row(0, degree - 1)];
+        }
+        (0..n_monomials(P)).for_each(|m| powers[m] *= moments[m]);
+        let factors = &powers[stencil.first_row()..n_monomials(P)];
+        if let Ok(nodes) = <&[NodeId; USUAL]>::try_from(stencil.nodes) {
+            let of_star = combined::<USUAL>(stencil.rows(), factors);
+            (0..USUAL).for_each(|i| sum.add(nodes[i], of_star[i]));
+            continue;
+        }
+        let of_star = &mut gathered.of_star;
+        of_star.clear();
+        of_star.resize(stencil.nodes.len(), 0.0);
+        for (m, factor) in (stencil.first_row()..).zip(factors) {
+            of_star.iter_mut().zip(stencil.row(m)).for_each(|(total, coefficient)| *total += factor * coefficient);
+        }
+        stencil.nodes.iter().zip(of_star.iter()).for_each(|(&other, &total)| sum.add(other, total));
     }
 }
 

@@ -402,27 +402,18 @@ pub(crate) fn elimination_fault(problem: &Problem, part: &MeshPart) -> Option<cr
     Some(problem.source.error(place, "[mesh]", message, "leave `elim` out"))
 }
 
-/// The stages of a solution.
-const SOLUTION: [Stage; 4] = [Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Post];
-
 /// Tells what nmt-mfdm tells of a solution of subdomain `k`.
 pub(crate) fn of_solution<'a>(k: usize, observer: &'a mut Observer) -> impl FnMut(nmt_mfdm::Event) + 'a {
-    of_stages(k, &SOLUTION, observer)
-}
-
-/// Tells what nmt-mfdm tells of subdomain `k`, the beginnings of its `stages` included: each begins where the one before ends.
-fn of_stages<'a>(k: usize, stages: &'static [Stage], observer: &'a mut Observer) -> impl FnMut(nmt_mfdm::Event) + 'a {
-    let mut rest = stages.iter();
-    rest.next().into_iter().for_each(|first| observer(k, Event::Begun(*first)));
-    move |event| match event {
-        nmt_mfdm::Event::Ended(stage) => {
-            observer(k, Event::Ended(stage.into()));
-            rest.next().into_iter().for_each(|next| observer(k, Event::Begun(*next)));
-        }
-        nmt_mfdm::Event::Nodes { done, of } => observer(k, Event::Nodes { done, of }),
-        nmt_mfdm::Event::Iteration { iterations, residual, target } => {
-            observer(k, Event::Iteration { iterations, residual, target });
-        }
+    move |event| {
+        let event = match event {
+            nmt_mfdm::Event::Begun(stage) => Event::Begun(stage.into()),
+            nmt_mfdm::Event::Ended(stage) => Event::Ended(stage.into()),
+            nmt_mfdm::Event::Nodes { done, of } => Event::Nodes { done, of },
+            nmt_mfdm::Event::Iteration { iterations, residual, target } => {
+                Event::Iteration { iterations, residual, target }
+            }
+        };
+        observer(k, event);
     }
 }
 

@@ -124,6 +124,10 @@ impl Csr {
         self.starts.len() - 1
     }
 
+    pub fn n_columns(&self) -> usize {
+        self.n_columns
+    }
+
     pub fn n_entries(&self) -> usize {
         self.columns.len()
     }
@@ -220,15 +224,6 @@ impl Csr {
     /// Multiplies every column by its factor.
     pub fn scale_columns(&mut self, factors: &[f64]) {
         self.columns.iter().zip(&mut self.values).for_each(|(column, value)| *value *= factors[*column as usize]);
-    }
-
-    /// Diagonal, shape (n_rows,).
-    pub fn diagonals(&self) -> Vec<f64> {
-        let mut diagonal = vec![0.0; self.n_rows()];
-        fill_pieces(&mut diagonal, ROWS, |first, out| {
-            out.iter_mut().enumerate().for_each(|(k, value)| *value = self.diagonal(first + k));
-        });
-        diagonal
     }
 
     /// Puts `rows` in the place of those that have their numbers, which ascend; within the matrix, since two of it would be

@@ -1,6 +1,6 @@
 //! How far a solution may be off, as far as the problem asks for it.
 
-use super::{MeshPart, Observer, SOLUTION, Stage, of_stages, torsion};
+use super::{MeshPart, Observer, of_solution, torsion};
 use crate::problem::Problem;
 use nmt_mfdm::{
     ErrorEstimate, HoleCondition, MfdmError, SolveParams, TorsionSolution, solve_estimated, solve_observed,
@@ -54,12 +54,10 @@ pub(super) fn solve_part(
 ) -> Result<(TorsionSolution, Estimated), MfdmError> {
     let torsion = torsion(problem, &problem.subdomains[k]);
     if !problem.solve.estimate {
-        let solution = solve_observed(&torsion, &part.mesh, params, &mut of_stages(k, &SOLUTION, observer))?;
+        let solution = solve_observed(&torsion, &part.mesh, params, &mut of_solution(k, observer))?;
         return Ok((solution, Estimated::NotAsked));
     }
-    let is_bounded = torsion.has_torsion_constant(part.section.holes.len());
-    let stages = if is_bounded { &ESTIMATED[..] } else { &SOLUTION };
-    let observer = &mut of_stages(k, stages, observer);
+    let observer = &mut of_solution(k, observer);
     let (solution, estimate) = solve_estimated(&torsion, &part.mesh, &part.section, params, observer)?;
     let estimated = match estimate {
         Ok(Some(estimate)) => Estimated::By(Box::new(estimate)),
@@ -68,7 +66,3 @@ pub(super) fn solve_part(
     };
     Ok((solution, estimated))
 }
-
-/// The stages of a solution with its estimate: the warping function comes before the recovery of both, the bounds after.
-const ESTIMATED: [Stage; 6] =
-    [Stage::Stencils, Stage::Assemble, Stage::Solve, Stage::Estimate, Stage::Post, Stage::Estimate];
