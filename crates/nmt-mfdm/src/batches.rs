@@ -16,7 +16,7 @@ use crate::repair::StarOutcome;
 use crate::solve::{Event, Stage};
 use crate::stencils::{Outcome, StarParams, StarReport, Stencils, half_as_many_again};
 use crate::surroundings::Surroundings;
-use crate::system::{Equation, LinearSystem};
+use crate::system::{Equation, LinearSystem, SystemMaker};
 use crate::variational::{self, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
@@ -28,9 +28,10 @@ const HELD: usize = 1 << 23;
 
 /// The system and what became of the stars.
 pub(crate) struct Batched {
-    /// With the stars of soft nodes mended.
     pub system: LinearSystem,
-    /// Of each equation.
+    /// By their numbers, those to put in their places: of stars that were mended since they left their nodes soft.
+    pub anew: BTreeMap<usize, Equation>,
+    /// Of each equation, with these.
     pub firmness: Vec<Firmness>,
     /// Of the holes' constants.
     pub equations: Vec<Equation>,
@@ -73,20 +74,22 @@ fn assemble_by(
         outcomes: vec![Outcome::default(); n_nodes],
     };
     let n = frame.roles.n_unknowns;
-    let (mut system, mut firmness) = (LinearSystem::new(n, frame.roles.n_holes), Vec::with_capacity(n));
-    for first in (0..n).step_by(batch) {
+    let (mut made, mut firmness) = (SystemMaker::new(frame.roles), Vec::with_capacity(n));
+    for first in (0..n.max(1)).step_by(batch) {
         let unknowns = first..(first + batch).min(n);
+        if first > 0 {
+            observer(Event::Ended(Stage::Assemble));
+        }
         observer(Event::Begun(Stage::Stencils));
         let stencils = making.stencils(nodes_around(frame, unknowns.clone()))?;
-        observer(Event::Nodes { done: unknowns.end, of: n });
+        // Nodes whose values are known come along.
+        observer(Event::Nodes { done: n_nodes - (n - unknowns.end), of: n_nodes });
         observer(Event::Ended(Stage::Stencils));
         observer(Event::Begun(Stage::Assemble));
         let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
-        firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut system)?);
-        drop(stencils);
-        observer(Event::Ended(Stage::Assemble));
+        firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut made)?);
     }
-    observer(Event::Begun(Stage::Assemble));
+    let system = made.system();
     // Nodes that enter no equation have stars too.
     let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| making.sizes[node] == 0).map(NodeId::of).collect();
     for nodes in rest.chunks(batch) {
@@ -110,8 +113,6 @@ fn assemble_by(
         }
         soft = touched.into_iter().filter(|&k| firmness[k].is_soft()).map(|k| frame.roles.node(k)).collect();
     }
-    // At once: what stays is moved.
-    system.replace(&anew.into_iter().collect::<Vec<_>>());
     let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
     let stencils = making.stencils(of_holes)?;
     let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
@@ -119,7 +120,7 @@ fn assemble_by(
     let mut report = StarReport { size: stars.size, choice: stars.choice, ..StarReport::default() };
     making.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), stars.order));
     let used_stars = UsedStars::new(stars, 0, making.larger, BTreeMap::new());
-    Ok(Batched { system, firmness, equations, stars: report, used_stars })
+    Ok(Batched { system, anew, firmness, equations, stars: report, used_stars })
 }
 
 /// What batches are made from, and what was met so far.
@@ -149,9 +150,8 @@ impl Making<'_> {
         nodes.iter().try_for_each(|node| stencils.require(node.index()..node.index() + 1, xy, 1))?;
         let mended = nodes.iter().filter_map(|node| Some((*node, *self.larger.get(node)?)));
         stencils.replace(self.around.0, self.around.1, &mended.collect::<Vec<_>>());
-        for node in nodes {
-            self.sizes[node.index()] = stencils.of(node).nodes.len() as u32;
-            self.outcomes[node.index()] = Outcome::from(stencils.outcome(node));
+        for (node, size, outcome) in stencils.outcomes() {
+            (self.sizes[node.index()], self.outcomes[node.index()]) = (size, outcome);
         }
         Ok(stencils)
     }
@@ -201,7 +201,8 @@ mod tests {
             let weak = WeakForm::blended(&stencils, &fluxes, &rule);
             let holes = hole_equations(&mesh, &weak, &node_tris, &roles, Formulation::Variational);
             for batch in [37, 10_000] {
-                let found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");
+                let mut found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");
+                found.system.mend(found.anew, Vec::new());
                 assert_eq!(found.stars, stencils.report(), "order {order}, {batch} at a time");
                 assert_eq!(found.used_stars, UsedStars::new(stars, 0, larger.clone(), BTreeMap::new()));
                 assert_eq!(found.system.rhs, system.rhs);

@@ -190,8 +190,8 @@ fn assemble_in_batches(
     let stars = params.star_params(frame.mesh.cloud(), &around.surroundings.metric())?;
     let places = (around.surroundings, around.nearest);
     let batched = batches::assemble(frame, places, stars, rule, observer)?;
-    let Batched { mut system, firmness, equations, stars, used_stars } = batched;
-    let holds = steady(frame, places, params.order, &mut system, &firmness);
+    let Batched { mut system, anew, firmness, equations, stars, used_stars } = batched;
+    let holds = steady(frame, places, params.order, &mut system, anew, &firmness);
     Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::error::MfdmError;
-use crate::system::{LinearSystem, RowSum};
+use crate::system::{LinearSystem, RowSum, SystemMaker};
 
 /// Collocates −∇²u = s at every unknown node, times the square of its star's radius, so that all rows are of one size
 /// whatever the spacing. The polynomial of a node with a flux meets n·∇u = q.
@@ -13,8 +13,8 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
     let Setting { frame: Frame { mesh, roles, source, .. }, stencils } = setting;
     // Only smoothing polynomials have Dirichlet rows, which are summed.
     let sum = || RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });
-    let mut system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
-    system.extend(0..roles.n_unknowns, sum, |sum, k, system| -> Result<(), MfdmError> {
+    let mut made = SystemMaker::new(roles);
+    made.extend(0..roles.n_unknowns, sum, |sum, k, system| -> Result<(), MfdmError> {
         let node = roles.node(k);
         if let Some(of_value) = dirichlet_row(setting, node, sum)? {
             system.push(&of_value);
@@ -27,5 +27,5 @@ pub(crate) fn assemble(setting: &Setting) -> Result<LinearSystem, MfdmError> {
         system.end(radius * radius * source.at(mesh.xy()[node.index()])? - known);
         Ok(())
     })?;
-    Ok(system)
+    Ok(made.system())
 }

@@ -12,7 +12,7 @@ use crate::solver::csr::Csr;
 use crate::steady::{Hold, holds};
 use crate::stencils::{StarParams, Stencils};
 use crate::surroundings::Surroundings;
-use crate::system::LinearSystem;
+use crate::system::{LinearSystem, Patched};
 use crate::variational::{self, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
@@ -71,9 +71,11 @@ impl Operator {
         let known = self.holds.iter().flat_map(|hold| hold.parts(frame.roles));
         let mut parts: Vec<_> = known.filter(|(k, _)| *k < n_boundary || self.is_beside[*k - n_boundary]).collect();
         let firmness = |k: usize| Firmness::of(system.matrix.diagonal(k), &frame, frame.roles.node(k));
-        let further = holds(frame, around, params.order, &system, firmness, 0..n_boundary);
+        let none = BTreeMap::new();
+        let rows = Patched::new(&system, &none);
+        let further = holds(frame, around, params.order, &rows, firmness, 0..n_boundary);
         parts.extend(further.iter().flat_map(|hold| hold.parts(frame.roles)));
-        system.join(parts);
+        system.mend(none, parts);
         Ok(system)
     }
 }
@@ -102,7 +104,7 @@ mod tests {
         let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..n).expect("a system");
         let firmness = |k: usize| Firmness::of(system.matrix.diagonal(k), &frame, frame.roles.node(k));
         let firmness: Vec<_> = (0..n).map(firmness).collect();
-        let holds = steady(frame, around, params.order, &mut system, &firmness);
+        let holds = steady(frame, around, params.order, &mut system, BTreeMap::new(), &firmness);
         let (matrix, is_beside) = (system.matrix.clone(), system.is_beside.clone());
         (system, Operator { matrix, is_beside, holds, larger })
     }

@@ -46,20 +46,23 @@ pub(crate) fn take_pieces<T: Send>(
     }
 }
 
-/// [`take_pieces`] whose results are made in the same few rooms again and again.
+/// Pieces that are held at a time by [`take_from_rooms`].
+const ROOMS: usize = 64;
+
+/// [`take_pieces`] whose results are made in the same few rooms again and again, and taken together.
 pub(crate) fn take_from_rooms<T: Send>(
     range: Range<usize>,
     size: usize,
     room: impl Fn() -> T,
     work: impl Fn(Range<usize>, &mut T) + Sync + Send,
-    mut take: impl FnMut(&mut T),
+    mut take: impl FnMut(&mut [T]),
 ) {
-    let mut rooms: Vec<T> = (0..range.len().div_ceil(size).min(BATCH)).map(|_| room()).collect();
-    for first in range.clone().step_by(BATCH * size) {
-        let pieces = (range.end - first).div_ceil(size).min(BATCH);
+    let mut rooms: Vec<T> = (0..range.len().div_ceil(size).min(ROOMS)).map(|_| room()).collect();
+    for first in range.clone().step_by(ROOMS * size) {
+        let pieces = (range.end - first).div_ceil(size).min(ROOMS);
         let piece = |k: usize| first + k * size..(first + (k + 1) * size).min(range.end);
         fill_pieces(&mut rooms[..pieces], 1, |k, rooms| rooms.iter_mut().for_each(|room| work(piece(k), room)));
-        rooms[..pieces].iter_mut().for_each(&mut take);
+        take(&mut rooms[..pieces]);
     }
 }
 

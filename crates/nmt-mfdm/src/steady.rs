@@ -19,13 +19,13 @@
 use crate::assembly::Frame;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::parallel::map_chunks;
-use crate::solver::csr::Csr;
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
-use crate::system::{LinearSystem, Role, Roles, SplitRow};
+use crate::system::{Equation, LinearSystem, Patched, Role, Roles, SplitRow};
 use crate::variational::Firmness;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Least determinant of the equations of two nodes, over that of their hats' energies; linear elements have 3/4 and more.
@@ -72,16 +72,18 @@ impl Hold {
     }
 }
 
-/// Adds the predictions of nodes that are hardly held to their equations, of which `firmness` is known; tells them.
+/// Puts equations made `anew` in the place of others, and adds the predictions of nodes that are hardly held; tells them.
+/// `firmness` is that of the equations then.
 pub(crate) fn steady(
     frame: Frame,
     around: (&Surroundings, &Nearest),
     order: usize,
     system: &mut LinearSystem,
+    anew: BTreeMap<usize, Equation>,
     firmness: &[Firmness],
 ) -> Vec<Hold> {
-    let holds = holds(frame, around, order, system, |k| firmness[k], 0..system.n());
-    system.join(holds.iter().flat_map(|hold| hold.parts(frame.roles)).collect());
+    let holds = holds(frame, around, order, &Patched::new(system, &anew), |k| firmness[k], 0..system.n());
+    system.mend(anew, holds.iter().flat_map(|hold| hold.parts(frame.roles)).collect());
     holds
 }
 
@@ -90,12 +92,12 @@ pub(crate) fn holds(
     frame: Frame,
     around: (&Surroundings, &Nearest),
     order: usize,
-    system: &LinearSystem,
+    rows: &Patched,
     firmness: impl Fn(usize) -> Firmness + Sync + Send,
     among: Range<usize>,
 ) -> Vec<Hold> {
     let mut predictor = Predictor::new(frame, around, order);
-    let loose = loose_nodes(&system.matrix, firmness, among).into_iter();
+    let loose = loose_nodes(rows, firmness, among).into_iter();
     let hold = |Loose { unknown, twin, energy, lacking }: Loose| {
         let strength = energy.min(REGULAR_ENERGY) + lacking;
         Some(Hold { strength, departure: predictor.departure(unknown, twin)? })
@@ -104,7 +106,7 @@ pub(crate) fn holds(
 }
 
 /// The nodes that are hardly held, ascending.
-fn loose_nodes(matrix: &Csr, firmness: impl Fn(usize) -> Firmness + Sync + Send, among: Range<usize>) -> Vec<Loose> {
+fn loose_nodes(rows: &Patched, firmness: impl Fn(usize) -> Firmness + Sync + Send, among: Range<usize>) -> Vec<Loose> {
     let pieces = map_chunks(among, |piece| {
         let mut loose: Vec<Loose> = Vec::new();
         for k in piece {
@@ -113,17 +115,17 @@ fn loose_nodes(matrix: &Csr, firmness: impl Fn(usize) -> Firmness + Sync + Send,
             if firm.is_soft() {
                 loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });
             }
-            for (j, there) in matrix.row(k).entries() {
+            rows.each_entry(k, |j, there| {
                 // The two rows may differ much, but two nodes could cancel only where the larger of the coefficients beside
                 // the diagonal is large: from its row the pair is seen. A negative coefficient of its own makes a node loose
                 // without a twin.
                 let Firmness { own: other, energy: other_energy } = firmness(j);
                 if 2.0 * there * there < own * other || own.min(other) <= 0.0 || j == k {
-                    continue;
+                    return;
                 }
-                let back = matrix.entry(j, k as u32);
+                let back = rows.entry(j, k);
                 if 2.0 * there * back < own * other {
-                    continue;
+                    return;
                 }
                 let determinant = own * other - there * back;
                 if determinant < LOOSE_PAIR * own_energy * other_energy {
@@ -131,7 +133,7 @@ fn loose_nodes(matrix: &Csr, firmness: impl Fn(usize) -> Firmness + Sync + Send,
                     loose.push(Loose { unknown: k, twin: Some(j), energy: own_energy, lacking });
                     loose.push(Loose { unknown: j, twin: Some(k), energy: other_energy, lacking });
                 }
-            }
+            });
         }
         loose
     });

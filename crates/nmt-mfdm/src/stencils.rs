@@ -417,6 +417,12 @@ impl Stencils {
         self.outcomes.get(self.of.place(node)).copied().map(StarOutcome::from).unwrap_or_default()
     }
 
+    /// Each node with the size of its star and what became of it, ascending.
+    pub(crate) fn outcomes(&self) -> impl Iterator<Item = (NodeId, u32, Outcome)> {
+        let each = self.stars.iter().zip(&self.outcomes).enumerate();
+        each.map(|(place, (star, outcome))| (self.of.node(place), star.size, *outcome))
+    }
+
     fn empty(params: StarParams, metric: Metric) -> Self {
         Self {
             params,

@@ -4,9 +4,10 @@
 use crate::error::MfdmError;
 use crate::parallel::{CHUNK, Pool, take_from_rooms};
 use crate::problem::HoleCondition;
-use crate::solver::csr::{Csr, Row};
+use crate::solver::csr::{Csr, CsrMaker, Row};
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// What a node's value is.
@@ -268,44 +269,6 @@ impl LinearSystem {
         Ok(system)
     }
 
-    /// Appends the equations of consecutive unknowns, on all cores; few are held beside the system. `equation` appends that of
-    /// an unknown, with the help of a `worker`, of which there are no more than threads; what it tells of it comes back in order.
-    ///
-    /// # Errors
-    /// The first that an equation has.
-    pub fn extend<W: Send, T: Send>(
-        &mut self,
-        unknowns: Range<usize>,
-        worker: impl Fn() -> W + Sync + Send,
-        equation: impl Fn(&mut W, usize, &mut Self) -> Result<T, MfdmError> + Sync + Send,
-    ) -> Result<Vec<T>, MfdmError> {
-        let (n, n_holes) = (self.matrix.n_columns(), self.hole_columns.len());
-        let workers = Pool::new(worker);
-        let work = |piece: Range<usize>, (room, told): &mut (Self, Result<Vec<T>, MfdmError>)| {
-            room.clear();
-            *told = workers.with(|worker| piece.map(|k| equation(worker, k, room)).collect());
-        };
-        let mut all = Ok(Vec::with_capacity(unknowns.len()));
-        take_from_rooms(
-            unknowns,
-            CHUNK,
-            || (Self::new(n, n_holes), Ok(Vec::new())),
-            work,
-            |(room, told)| {
-                let told = std::mem::replace(told, Ok(Vec::new()));
-                match (&mut all, told) {
-                    (Ok(all), Ok(told)) => {
-                        all.extend(told);
-                        self.append(room);
-                    }
-                    (Ok(_), Err(error)) => all = Err(error),
-                    (Err(_), _) => {}
-                }
-            },
-        );
-        all
-    }
-
     /// Makes it empty, with the room it has.
     fn clear(&mut self) {
         self.matrix.clear();
@@ -314,12 +277,12 @@ impl LinearSystem {
         self.hole_columns.iter_mut().for_each(Vec::clear);
     }
 
-    fn append(&mut self, piece: &Self) {
+    /// Appends the equations of `other`, but for their rows of A.
+    fn append_all_but_rows(&mut self, other: &Self) {
         let first = self.rhs.len() as u32;
-        self.matrix.append(&piece.matrix);
-        self.rhs.extend_from_slice(&piece.rhs);
-        self.is_beside.extend_from_slice(&piece.is_beside);
-        for (all, own) in self.hole_columns.iter_mut().zip(&piece.hole_columns) {
+        self.rhs.extend_from_slice(&other.rhs);
+        self.is_beside.extend_from_slice(&other.is_beside);
+        for (all, own) in self.hole_columns.iter_mut().zip(&other.hole_columns) {
             all.extend(own.iter().map(|&(row, coefficient)| (first + row, coefficient)));
         }
     }
@@ -346,35 +309,35 @@ impl LinearSystem {
         }
     }
 
-    /// Adds functionals to the left sides of the equations that have their numbers, in any order, one equation more than
-    /// once.
-    pub fn join(&mut self, mut parts: Vec<(usize, SplitRow)>) {
-        if parts.is_empty() {
-            return;
-        }
+    /// Puts equations in the place of those that have their numbers, then adds functionals to the left sides of those that have
+    /// theirs, in any order, one equation more than once.
+    pub fn mend(&mut self, mut anew: BTreeMap<usize, Equation>, mut parts: Vec<(usize, SplitRow)>) {
         parts.sort_by_key(|(number, _)| *number);
-        let mut numbers: Vec<usize> = Vec::new();
-        let mut rows: Vec<Vec<(u32, f64)>> = Vec::new();
         for of_one in parts.chunk_by(|a, b| a.0 == b.0) {
-            let number = of_one[0].0;
-            let own = self.matrix.row(number).entries().map(|(column, value)| (column as u32, value));
-            let mut entries: Vec<(u32, f64)> = own.collect();
+            let row = &mut anew.entry(of_one[0].0).or_insert_with_key(|number| self.equation(*number)).row;
             for (_, part) in of_one {
-                entries.extend(&part.unknowns);
-                self.rhs[number] -= part.known;
-                self.is_beside[number] |= part.is_beside;
-                let holes = part.holes.iter();
-                holes.for_each(|(hole, value)| self.hole_columns[*hole as usize].push((number as u32, *value)));
+                row.unknowns.extend(&part.unknowns);
+                part.holes.iter().for_each(|&(hole, coefficient)| row.add(Role::Hole(hole), coefficient));
+                row.known += part.known;
+                row.is_beside |= part.is_beside;
             }
-            entries.sort_by_key(|(column, _)| *column);
-            numbers.push(number);
-            rows.push(entries.chunk_by(|a, b| a.0 == b.0).map(sum_of_same).collect());
+            row.unknowns.sort_by_key(|(unknown, _)| *unknown);
+            row.unknowns = row.unknowns.chunk_by(|a, b| a.0 == b.0).map(sum_of_same).collect();
         }
-        self.matrix.replace_rows(&numbers, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        for column in &mut self.hole_columns {
-            column.sort_by_key(|(row, _)| *row);
-            *column = column.chunk_by(|a, b| a.0 == b.0).map(sum_of_same).collect();
-        }
+        self.replace(&anew.into_iter().collect::<Vec<_>>());
+    }
+
+    /// The equation of a number.
+    fn equation(&self, number: usize) -> Equation {
+        let entries = self.matrix.row(number).entries();
+        let unknowns = entries.map(|(column, value)| (column as u32, value)).collect();
+        let of_hole = |(hole, column): (u32, &Vec<(u32, f64)>)| {
+            let at = column.binary_search_by_key(&(number as u32), |(row, _)| *row).ok()?;
+            Some((hole, column[at].1))
+        };
+        let holes = (0..).zip(&self.hole_columns).filter_map(of_hole).collect();
+        let row = SplitRow { unknowns, holes, known: 0.0, is_beside: self.is_beside[number] };
+        Equation { row, rhs: self.rhs[number] }
     }
 
     /// Appends row · x = 0, in which the row's columns are moved by `shift`.
@@ -418,6 +381,97 @@ impl LinearSystem {
         self.matrix.end_row();
         self.rhs.push(rhs - std::mem::take(&mut self.known));
         self.is_beside.push(std::mem::take(&mut self.is_under_way_beside));
+    }
+}
+
+/// The rows of a system in which equations are to be put in the place of others.
+pub(crate) struct Patched<'a> {
+    matrix: &'a Csr,
+    anew: &'a BTreeMap<usize, Equation>,
+    is_anew: Vec<bool>,
+}
+
+impl<'a> Patched<'a> {
+    pub fn new(system: &'a LinearSystem, anew: &'a BTreeMap<usize, Equation>) -> Self {
+        let mut is_anew = vec![false; system.n()];
+        anew.keys().for_each(|number| is_anew[*number] = true);
+        Self { matrix: &system.matrix, anew, is_anew }
+    }
+
+    /// Hands over (column, value) of a row in order.
+    #[inline]
+    pub fn each_entry(&self, i: usize, mut to: impl FnMut(usize, f64)) {
+        if self.is_anew[i] {
+            let unknowns = self.anew.get(&i).into_iter().flat_map(|equation| &equation.row.unknowns);
+            return unknowns.for_each(|&(j, value)| to(j as usize, value));
+        }
+        self.matrix.row(i).entries().for_each(|(j, value)| to(j, value));
+    }
+
+    /// a_ij, or 0.
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
+        match self.anew.get(&i) {
+            Some(equation) => equation.row.of_unknown(j),
+            None => self.matrix.entry(i, j as u32),
+        }
+    }
+}
+
+/// A system whose equations are made on all cores.
+pub(crate) struct SystemMaker {
+    system: LinearSystem, // without its matrix
+    rows: CsrMaker,
+}
+
+impl SystemMaker {
+    /// No equation yet, of all that the unknowns will have.
+    pub fn new(roles: &Roles) -> Self {
+        let system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
+        Self { system, rows: CsrMaker::new(roles.n_unknowns, roles.n_unknowns) }
+    }
+
+    /// Appends the equations of consecutive unknowns; few are held beside the system. `equation` appends that of an unknown,
+    /// with the help of a `worker`, of which there are no more than threads; what it tells of it comes back in order.
+    ///
+    /// # Errors
+    /// The first that an equation has.
+    pub fn extend<W: Send, T: Send>(
+        &mut self,
+        unknowns: Range<usize>,
+        worker: impl Fn() -> W + Sync + Send,
+        equation: impl Fn(&mut W, usize, &mut LinearSystem) -> Result<T, MfdmError> + Sync + Send,
+    ) -> Result<Vec<T>, MfdmError> {
+        let Self { system, rows } = self;
+        let (n, n_holes) = (system.matrix.n_columns(), system.hole_columns.len());
+        let workers = Pool::new(worker);
+        let work = |piece: Range<usize>, (room, told): &mut (LinearSystem, Result<Vec<T>, MfdmError>)| {
+            room.clear();
+            *told = workers.with(|worker| piece.map(|k| equation(worker, k, room)).collect());
+        };
+        let mut all = Ok(Vec::with_capacity(unknowns.len()));
+        take_from_rooms(
+            unknowns,
+            CHUNK,
+            || (LinearSystem::new(n, n_holes), Ok(Vec::new())),
+            work,
+            |made| {
+                for (room, told) in made.iter_mut() {
+                    match (&mut all, std::mem::replace(told, Ok(Vec::new()))) {
+                        (Ok(all), Ok(told)) => all.extend(told),
+                        (Ok(_), Err(error)) => all = Err(error),
+                        (Err(_), _) => {}
+                    }
+                    system.append_all_but_rows(room);
+                }
+                rows.append(made.iter().map(|(room, _)| &room.matrix).collect());
+            },
+        );
+        all
+    }
+
+    /// The system of the equations so far.
+    pub fn system(self) -> LinearSystem {
+        LinearSystem { matrix: self.rows.matrix(), ..self.system }
     }
 }
 

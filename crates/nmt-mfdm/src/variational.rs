@@ -4,7 +4,7 @@ use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::element::Element;
 use crate::error::MfdmError;
 use crate::parallel::{Pool, map_chunks};
-use crate::system::{Equation, LinearSystem, RowSum};
+use crate::system::{Equation, LinearSystem, RowSum, SystemMaker};
 use crate::weak::{Gathered, WeakForm};
 use nmt_geom::NodeId;
 use std::ops::Range;
@@ -12,9 +12,9 @@ use std::ops::Range;
 /// One equation an unknown: ∫∇u·∇v = ∫s·v + ∫q·v with the node's hat v.
 pub(crate) fn assemble(setting: &Setting, weak: &WeakForm) -> Result<LinearSystem, MfdmError> {
     let roles = setting.frame.roles;
-    let mut system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
-    append(setting, weak, 0..roles.n_unknowns, &mut system)?;
-    Ok(system)
+    let mut made = SystemMaker::new(roles);
+    append(setting, weak, 0..roles.n_unknowns, &mut made)?;
+    Ok(made.system())
 }
 
 /// Appends the equations of `unknowns`; tells how firmly each holds its node.
@@ -25,10 +25,10 @@ pub(crate) fn append(
     setting: &Setting,
     weak: &WeakForm,
     unknowns: Range<usize>,
-    system: &mut LinearSystem,
+    made: &mut SystemMaker,
 ) -> Result<Vec<Firmness>, MfdmError> {
     let maker = || EquationMaker::new(setting, weak);
-    system.extend(unknowns, maker, |maker, k, system| maker.append(k, system))
+    made.extend(unknowns, maker, |maker, k, system| maker.append(k, system))
 }
 
 /// The equations of `unknowns`, each with its number.

@@ -1,6 +1,6 @@
 //! Sparse matrices by rows, and their products.
 
-use crate::parallel::{fill_pieces, large_pieces, take_pieces};
+use crate::parallel::{fill_pieces, large_pieces, map_owned, take_pieces};
 use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
@@ -304,6 +304,77 @@ impl Csr {
         let mut all = Self::new(n);
         take_pieces(0..n_rows, large_pieces(n_rows).max(PRODUCT_ROWS), piece, |piece| all.append(&piece));
         all
+    }
+}
+
+/// A matrix that grows by many rows at a time, copied on all cores.
+///
+/// What it will hold is estimated from the first rows. Room that is not written to yet costs no memory where the system gives
+/// out pages when they are first used, which then happens on all cores too.
+pub(crate) struct CsrMaker {
+    starts: Vec<usize>,
+    columns: Vec<u32>, // zeros from the last start on
+    values: Vec<f64>,  // as long
+    n_rows: usize,
+    n_columns: usize,
+}
+
+/// Room beyond what the first rows let expect, as a part of it.
+const SPARE: f64 = 0.25;
+
+impl CsrMaker {
+    /// No row yet, of all that there will be.
+    pub fn new(n_rows: usize, n_columns: usize) -> Self {
+        let mut starts = Vec::with_capacity(n_rows + 1);
+        starts.push(0);
+        Self { starts, columns: Vec::new(), values: Vec::new(), n_rows, n_columns }
+    }
+
+    /// Puts matrices of as many columns under the rows so far, in order.
+    pub fn append(&mut self, pieces: Vec<&Csr>) {
+        for piece in &pieces {
+            let first = self.n_entries();
+            self.starts.extend(piece.starts[1..].iter().map(|start| first + start));
+        }
+        let n_new: usize = pieces.iter().map(|piece| piece.n_entries()).sum();
+        let (end, first) = (self.n_entries(), self.n_entries() - n_new);
+        if end > self.columns.len() {
+            self.make_room(first, end);
+        }
+        let (mut columns, mut values) = (&mut self.columns[first..end], &mut self.values[first..end]);
+        let mut copies = Vec::with_capacity(pieces.len());
+        for piece in pieces {
+            let (own_columns, other_columns) = columns.split_at_mut(piece.n_entries());
+            let (own_values, other_values) = values.split_at_mut(piece.n_entries());
+            copies.push((own_columns, own_values, piece));
+            (columns, values) = (other_columns, other_values);
+        }
+        map_owned(copies, |(columns, values, piece)| {
+            columns.copy_from_slice(&piece.columns);
+            values.copy_from_slice(&piece.values);
+        });
+    }
+
+    fn n_entries(&self) -> usize {
+        self.starts[self.starts.len() - 1]
+    }
+
+    /// Room for all entries, by those `end` of the rows so far, the first `n_kept` of which are kept.
+    fn make_room(&mut self, n_kept: usize, end: usize) {
+        let a_row = end as f64 / (self.starts.len() - 1) as f64;
+        let n = end.max((self.n_rows as f64 * a_row * (1.0 + SPARE)) as usize);
+        let (mut columns, mut values) = (vec![0; n], vec![0.0; n]);
+        columns[..n_kept].copy_from_slice(&self.columns[..n_kept]);
+        values[..n_kept].copy_from_slice(&self.values[..n_kept]);
+        (self.columns, self.values) = (columns, values);
+    }
+
+    /// The matrix of the rows so far.
+    pub fn matrix(mut self) -> Csr {
+        let n = self.n_entries();
+        self.columns.truncate(n);
+        self.values.truncate(n);
+        Csr { starts: self.starts, columns: self.columns, values: self.values, n_columns: self.n_columns }
     }
 }
 
