@@ -44,7 +44,7 @@ pub enum Stop {
         /// How many.
         clouds: usize,
     },
-    /// It was tried and failed; where there are several subdomains, that of one ends all.
+    /// It was tried and failed; of conforming subdomains that of one ends all.
     #[error("the next cloud failed: {}; give a larger tolerance, or another first cloud", with_causes(.0))]
     Failed(NmtError),
 }
@@ -90,42 +90,64 @@ const WHOLE_WITHIN: f64 = 1.0e-9;
 /// them, or of conforming subdomains the last, whose clouds fit together. [`Step::of`] the solution tells, and
 /// [`SolvedPart::stop`] why it is not met.
 ///
-/// The first clouds are those of the file; refined ones are never coarser than that spacing.
+/// The first clouds are those of the file; refined ones are never coarser than that spacing, and grow away from where they
+/// are refined as the file's do.
 ///
 /// # Errors
 /// As [`super::clouds`], [`super::meshes`] and [`super::solutions`], for the first clouds; those of finer ones end the
-/// refinement.
+/// refinement of their subdomain.
 pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) -> Result<Vec<SolvedPart>, NmtError> {
     if let Some(fault) = torsion_fault(problem, "has no torsion", "leave it out, or call solve_any") {
         return Err(NmtError::Problem(vec![fault]));
     }
+    refined(problem, tolerance, observer, &mut |finer, wanted, observer| round(problem, finer, wanted, observer))
+}
+
+/// Makes solutions of the subdomains that are wanted, on clouds refined beyond the file.
+type Round<'a> = dyn FnMut(&Finer, &[bool], &mut Observer) -> Result<Vec<(usize, SolvedPart)>, NmtError> + 'a;
+
+/// [`to_tolerance`] by `round`.
+fn refined(
+    problem: &Problem,
+    tolerance: f64,
+    observer: &mut Observer,
+    round: &mut Round,
+) -> Result<Vec<SolvedPart>, NmtError> {
     let n = problem.subdomains.len();
     let is_conforming = problem.subdomains.iter().any(|subdomain| subdomain.conforming);
     let mut finer = Finer(vec![Vec::new(); n]);
     let mut ways: Vec<Way> = (0..n).map(|_| Way::default()).collect();
     let mut wanted = vec![true; n];
-    let mut stop = Stop::Clouds { clouds: MOST_STEPS };
     for step in 0..MOST_STEPS {
-        let round = match round(problem, &finer, &wanted, observer) {
-            Ok(round) => round,
-            Err(error) if step == 0 => return Err(error),
-            // What has been found so far stands, and says that it does not meet the tolerance.
-            Err(error) => {
-                stop = Stop::Failed(error);
-                break;
+        // First ones are told all their faults at once, and conforming ones need each other.
+        let groups = if step == 0 || is_conforming { vec![wanted.clone()] } else { each_alone(&wanted) };
+        for group in groups {
+            match round(&finer, &group, observer) {
+                Ok(parts) => {
+                    for (k, part) in parts {
+                        observer(k, Event::Step(Step::of(&part)));
+                        ways[k].add(part);
+                    }
+                }
+                Err(error) if step == 0 => return Err(error),
+                // What has been found so far stands, and says that it does not meet the tolerance.
+                Err(error) => {
+                    let failed = ways.iter_mut().zip(group).filter(|(_, is_of_it)| *is_of_it);
+                    failed.for_each(|(way, _)| way.stop = Some(Stop::Failed(error.clone())));
+                }
             }
-        };
-        for (k, part) in round {
-            observer(k, Event::Step(Step::of(&part)));
-            ways[k].add(part);
         }
         for (k, way) in ways.iter_mut().enumerate() {
-            let most = problem.solve.max_nodes;
-            let next = way.latest.as_ref().map_or(Next::Met, |part| next(part, tolerance, most));
-            wanted[k] = matches!(next, Next::Finer(_));
-            way.is_too_large = matches!(next, Next::TooLarge);
-            if let Next::Finer(refinements) = next {
-                finer.0[k] = refinements;
+            wanted[k] = false;
+            if matches!(way.stop, Some(Stop::Failed(_))) {
+                continue;
+            }
+            let (most, growth) = (problem.solve.max_nodes, growth(problem, k));
+            way.stop = None;
+            match way.latest.as_ref().map_or(Next::Met, |part| next(part, tolerance, most, growth)) {
+                Next::Met => {}
+                Next::TooLarge => way.stop = Some(Stop::Nodes { most }),
+                Next::Finer(refinements) => (wanted[k], finer.0[k]) = (true, refinements),
             }
         }
         if !wanted.contains(&true) {
@@ -138,12 +160,23 @@ pub fn to_tolerance(problem: &Problem, tolerance: f64, observer: &mut Observer) 
     }
     // Conforming clouds fit together only if they are of one round.
     let of = |way: Way| {
-        let of_own = way.is_too_large.then_some(Stop::Nodes { most: problem.solve.max_nodes });
+        let stop = way.stop.clone().unwrap_or(Stop::Clouds { clouds: MOST_STEPS });
         let part = if is_conforming { way.newest() } else { way.best() }?;
         let is_met = Step::of(&part).error <= tolerance;
-        Some(SolvedPart { stop: (!is_met).then(|| of_own.unwrap_or(stop.clone())), ..part })
+        Some(SolvedPart { stop: (!is_met).then_some(stop), ..part })
     };
     Ok(ways.into_iter().filter_map(of).collect())
+}
+
+/// Those that are wanted, one by one.
+fn each_alone(wanted: &[bool]) -> Vec<Vec<bool>> {
+    let alone = |k: usize| (0..wanted.len()).map(|other| other == k).collect();
+    (0..wanted.len()).filter(|k| wanted[*k]).map(alone).collect()
+}
+
+/// How fast the spacing of subdomain `k` grows away from where it is refined.
+fn growth(problem: &Problem, k: usize) -> f64 {
+    problem.subdomains[k].grading.as_ref().map_or(DEFAULT_GROWTH, |grading| grading.growth)
 }
 
 /// The solutions of one subdomain.
@@ -153,8 +186,8 @@ struct Way {
     /// The best before the latest.
     before: Option<SolvedPart>,
     history: Vec<Step>,
-    /// The next cloud would have too many nodes.
-    is_too_large: bool,
+    /// Why there is no next cloud although the tolerance is not met.
+    stop: Option<Stop>,
 }
 
 impl Way {
@@ -219,15 +252,15 @@ enum Next {
     Finer(Vec<Refinement>),
 }
 
-/// What the next cloud shall be.
-fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Next {
+/// What the next cloud shall be, its spacing growing by `growth`.
+fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize, growth: f64) -> Next {
     let cloud = solved.part.mesh.cloud();
     let spacing = spacings(solved);
     let (factors, corners) = match solved.estimate.made() {
         Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return Next::Met,
         Some(estimate) => {
             let sought = Sought::new(solved, estimate, tolerance);
-            (sought.factors(), sought.corners())
+            (sought.factors(), sought.corners(growth))
         }
         // Too coarse to say anything: half the spacing everywhere.
         None => (vec![0.5; cloud.n_nodes()], Vec::new()),
@@ -239,7 +272,7 @@ fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize) -> Next {
     let at = |(node, factor): (usize, f64)| Refinement {
         target: Target::Point(cloud.xy()[node]),
         size: (factor * spacing[node]).max(least_spacing(solved)),
-        growth: DEFAULT_GROWTH,
+        growth,
     };
     let everywhere = factors.into_iter().enumerate().map(at);
     Next::Finer(everywhere.chain(corners).collect())
@@ -335,7 +368,7 @@ impl<'a> Sought<'a> {
     }
 
     /// Refinements at the vertices whose singularity limits the order: r^(π/ω) with π/ω < p + 1.
-    fn corners(&self) -> Vec<Refinement> {
+    fn corners(&self, growth: f64) -> Vec<Refinement> {
         let cloud = self.solved.part.mesh.cloud();
         let angles = vertex_angles(&self.solved.part.section);
         let limiting: Vec<(Point, f64)> = angles
@@ -349,8 +382,50 @@ impl<'a> Sought<'a> {
             let own: f64 = self.around(node).sum();
             let factor = (each / own).powf(0.5 / exponent).max(LEAST_CORNER_FACTOR);
             let size = (factor * cloud.local_spacing(NodeId::of(node))).max(least_spacing(self.solved));
-            (factor < 1.0).then_some(Refinement { target: Target::Point(*at), size, growth: DEFAULT_GROWTH })
+            (factor < 1.0).then_some(Refinement { target: Target::Point(*at), size, growth })
         };
         limiting.iter().filter_map(refinement).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Overrides;
+    use nmt_mfdm::MfdmError;
+
+    /// Two L's, and rounds of which that of "b" fails when it comes to the second.
+    fn solved(conforming: &str) -> (Vec<SolvedPart>, usize) {
+        let shape = |name: &str, x: f64| {
+            let at = |p: [f64; 2]| format!("[{}, {}]", p[0] + x, p[1]);
+            let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]].map(at).join(", ");
+            format!("[[subdomain]]\nname = \"{name}\"\nnodes = [15, 15]\n{conforming}\noutline = [{corners}]\n")
+        };
+        let text = format!("{}{}[solve]\ntolerance = 1e-4\n", shape("a", 0.0), shape("b", 2.0));
+        let problem = Problem::parse("t.toml", &text, &Overrides::default()).expect("a sound problem");
+        let mut rounds_of_b = 0;
+        let mut with_failure = |finer: &Finer, wanted: &[bool], observer: &mut Observer| {
+            rounds_of_b += usize::from(wanted[1]);
+            if wanted[1] && rounds_of_b > 1 {
+                return Err(NmtError::Solve { subdomain: "b".into(), source: MfdmError::Singular { n: 7 } });
+            }
+            round(&problem, finer, wanted, observer)
+        };
+        let solved = refined(&problem, 1e-4, &mut |_, _| {}, &mut with_failure).expect("first solutions");
+        (solved, rounds_of_b)
+    }
+
+    #[test]
+    fn a_later_cloud_that_fails_ends_the_way_of_its_subdomain_and_is_told() {
+        let (apart, rounds) = solved("");
+        assert_eq!(rounds, 2, "what failed is not tried again");
+        assert!(apart[0].history.len() > 1 && Step::of(&apart[0]).error <= 1e-4 && apart[0].stop.is_none());
+        assert!(apart[1].history.len() == 1 && Step::of(&apart[1]).error > 1e-4);
+        let told = apart[1].stop.as_ref().map(Stop::to_string).unwrap_or_default();
+        assert!(told.starts_with("the next cloud failed: ") && told.contains('7'), "{told}");
+
+        // Clouds of different rounds do not fit together.
+        let (conforming, _) = solved("conforming = true");
+        assert!(conforming.iter().all(|part| part.history.len() == 1 && part.stop.is_some()));
     }
 }
