@@ -55,16 +55,9 @@ impl Operator {
         let mended = nodes.iter().filter_map(|node| Some((*node, *self.larger.get(node)?)));
         stencils.replace(around.0, around.1, &mended.collect::<Vec<_>>());
 
-        let mut system = LinearSystem::with_room(n, frame.roles.n_holes, self.matrix.n_entries());
+        let mut system = LinearSystem::homogeneous(self.matrix.after(n_boundary), frame.roles.n_holes);
         let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
-        let mut made = variational::equations(&frame.with(&stencils), &weak, &anew)?.into_iter().peekable();
-        for k in 0..n {
-            match made.next_if(|(number, _)| *number == k) {
-                Some((_, equation)) => system.push(&equation),
-                None => system.push_homogeneous(self.matrix.row(k - n_boundary), n_boundary as u32),
-            }
-        }
-        drop(self.matrix);
+        system.replace(&variational::equations(&frame.with(&stencils), &weak, &anew)?);
 
         mend(frame, around, rule, &mut stencils, &mut system, 0..n_boundary)?;
         // Equations taken over have what holds their nodes in them.

@@ -4,7 +4,7 @@
 use crate::error::MfdmError;
 use crate::parallel::{CHUNK, Pool, take_from_rooms};
 use crate::problem::HoleCondition;
-use crate::solver::csr::{Csr, CsrMaker, Row};
+use crate::solver::csr::{Csr, CsrMaker};
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
 use std::collections::BTreeMap;
@@ -247,9 +247,10 @@ impl LinearSystem {
         Self { matrix, rhs: Vec::new(), hole_columns, is_beside: Vec::new(), known: 0.0, is_under_way_beside: false }
     }
 
-    /// As [`Self::new`], with room for so many entries of A.
-    pub fn with_room(n: usize, n_holes: usize, n_entries: usize) -> Self {
-        Self { matrix: Csr::with_room(n, n, n_entries), ..Self::new(n, n_holes) }
+    /// A·x = 0.
+    pub fn homogeneous(matrix: Csr, n_holes: usize) -> Self {
+        let n = matrix.n_rows();
+        Self { rhs: vec![0.0; n], is_beside: vec![false; n], matrix, ..Self::new(n, n_holes) }
     }
 
     /// Number of equations.
@@ -338,13 +339,6 @@ impl LinearSystem {
         let holes = (0..).zip(&self.hole_columns).filter_map(of_hole).collect();
         let row = SplitRow { unknowns, holes, known: 0.0, is_beside: self.is_beside[number] };
         Equation { row, rhs: self.rhs[number] }
-    }
-
-    /// Appends row · x = 0, in which the row's columns are moved by `shift`.
-    pub fn push_homogeneous(&mut self, row: Row, shift: u32) {
-        self.matrix.push_row(row, shift);
-        self.rhs.push(0.0);
-        self.is_beside.push(false);
     }
 
     /// Appends an equation.

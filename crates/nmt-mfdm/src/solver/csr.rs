@@ -76,11 +76,11 @@ impl Csr {
         Self { starts, columns, values, n_columns }
     }
 
-    /// Appends a row, its columns moved by `shift`.
-    pub fn push_row(&mut self, row: Row, shift: u32) {
-        self.columns.extend(row.columns.iter().map(|column| column + shift));
-        self.values.extend_from_slice(row.values);
-        self.end_row();
+    /// The matrix after `n` empty rows and as many columns.
+    pub fn after(mut self, n: usize) -> Self {
+        self.starts.splice(0..0, std::iter::repeat_n(0, n));
+        self.columns.iter_mut().for_each(|column| *column += n as u32);
+        Self { n_columns: self.n_columns + n, ..self }
     }
 
     /// Appends an entry to the row begun.
