@@ -16,15 +16,19 @@ use crate::repair::StarOutcome;
 use crate::solve::{Event, Stage};
 use crate::stencils::{Outcome, StarParams, StarReport, Stencils, half_as_many_again};
 use crate::surroundings::Surroundings;
-use crate::system::{Equation, LinearSystem, SystemMaker};
+use crate::system::{Equation, LinearSystem};
+use crate::system_maker::SystemMaker;
 use crate::variational::{self, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
 use std::collections::BTreeMap;
 
-/// Coefficients of stars that are held at a time, 64 MB.
-const HELD: usize = 1 << 23;
+/// Coefficients of stars that are held at a time, 16 MB, unless these are fewer stars than [`LEAST`].
+const HELD: usize = 1 << 21;
+
+/// Equations whose stars are held at a time, at least: of fewer the rims would be much.
+const LEAST: usize = 1 << 14;
 
 /// The system and what became of the stars.
 pub(crate) struct Batched {
@@ -51,7 +55,7 @@ pub(crate) fn assemble(
     observer: &mut dyn FnMut(Event),
 ) -> Result<Batched, MfdmError> {
     let a_star = n_monomials(stars.order) * stars.size;
-    assemble_by((HELD / a_star).max(1), frame, around, stars, rule, observer)
+    assemble_by((HELD / a_star).max(LEAST), frame, around, stars, rule, observer)
 }
 
 /// [`assemble`] with `batch` equations at a time.

@@ -2,7 +2,8 @@
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::error::MfdmError;
-use crate::system::{LinearSystem, RowSum, SystemMaker};
+use crate::system::{LinearSystem, RowSum};
+use crate::system_maker::SystemMaker;
 
 /// Collocates −∇²u = s at every unknown node, times the square of its star's radius, so that all rows are of one size
 /// whatever the spacing. The polynomial of a node with a flux meets n·∇u = q.

@@ -19,9 +19,10 @@
 use crate::assembly::Frame;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::parallel::map_chunks;
+use crate::patched::Patched;
 use crate::star::{StarChoice, StarFinder, default_star};
 use crate::surroundings::Surroundings;
-use crate::system::{Equation, LinearSystem, Patched, Role, Roles, SplitRow};
+use crate::system::{Equation, LinearSystem, Role, Roles, SplitRow};
 use crate::variational::Firmness;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;

@@ -2,13 +2,11 @@
 //! a flux.
 
 use crate::error::MfdmError;
-use crate::parallel::{CHUNK, Pool, take_from_rooms};
 use crate::problem::HoleCondition;
-use crate::solver::csr::{Csr, CsrMaker};
+use crate::solver::csr::Csr;
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// What a node's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -271,7 +269,7 @@ impl LinearSystem {
     }
 
     /// Makes it empty, with the room it has.
-    fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.matrix.clear();
         self.rhs.clear();
         self.is_beside.clear();
@@ -279,7 +277,7 @@ impl LinearSystem {
     }
 
     /// Appends the equations of `other`, but for their rows of A.
-    fn append_all_but_rows(&mut self, other: &Self) {
+    pub fn append_all_but_rows(&mut self, other: &Self) {
         let first = self.rhs.len() as u32;
         self.rhs.extend_from_slice(&other.rhs);
         self.is_beside.extend_from_slice(&other.is_beside);
@@ -375,97 +373,6 @@ impl LinearSystem {
         self.matrix.end_row();
         self.rhs.push(rhs - std::mem::take(&mut self.known));
         self.is_beside.push(std::mem::take(&mut self.is_under_way_beside));
-    }
-}
-
-/// The rows of a system in which equations are to be put in the place of others.
-pub(crate) struct Patched<'a> {
-    matrix: &'a Csr,
-    anew: &'a BTreeMap<usize, Equation>,
-    is_anew: Vec<bool>,
-}
-
-impl<'a> Patched<'a> {
-    pub fn new(system: &'a LinearSystem, anew: &'a BTreeMap<usize, Equation>) -> Self {
-        let mut is_anew = vec![false; system.n()];
-        anew.keys().for_each(|number| is_anew[*number] = true);
-        Self { matrix: &system.matrix, anew, is_anew }
-    }
-
-    /// Hands over (column, value) of a row in order.
-    #[inline]
-    pub fn each_entry(&self, i: usize, mut to: impl FnMut(usize, f64)) {
-        if self.is_anew[i] {
-            let unknowns = self.anew.get(&i).into_iter().flat_map(|equation| &equation.row.unknowns);
-            return unknowns.for_each(|&(j, value)| to(j as usize, value));
-        }
-        self.matrix.row(i).entries().for_each(|(j, value)| to(j, value));
-    }
-
-    /// a_ij, or 0.
-    pub fn entry(&self, i: usize, j: usize) -> f64 {
-        match self.anew.get(&i) {
-            Some(equation) => equation.row.of_unknown(j),
-            None => self.matrix.entry(i, j as u32),
-        }
-    }
-}
-
-/// A system whose equations are made on all cores.
-pub(crate) struct SystemMaker {
-    system: LinearSystem, // without its matrix
-    rows: CsrMaker,
-}
-
-impl SystemMaker {
-    /// No equation yet, of all that the unknowns will have.
-    pub fn new(roles: &Roles) -> Self {
-        let system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
-        Self { system, rows: CsrMaker::new(roles.n_unknowns, roles.n_unknowns) }
-    }
-
-    /// Appends the equations of consecutive unknowns; few are held beside the system. `equation` appends that of an unknown,
-    /// with the help of a `worker`, of which there are no more than threads; what it tells of it comes back in order.
-    ///
-    /// # Errors
-    /// The first that an equation has.
-    pub fn extend<W: Send, T: Send>(
-        &mut self,
-        unknowns: Range<usize>,
-        worker: impl Fn() -> W + Sync + Send,
-        equation: impl Fn(&mut W, usize, &mut LinearSystem) -> Result<T, MfdmError> + Sync + Send,
-    ) -> Result<Vec<T>, MfdmError> {
-        let Self { system, rows } = self;
-        let (n, n_holes) = (system.matrix.n_columns(), system.hole_columns.len());
-        let workers = Pool::new(worker);
-        let work = |piece: Range<usize>, (room, told): &mut (LinearSystem, Result<Vec<T>, MfdmError>)| {
-            room.clear();
-            *told = workers.with(|worker| piece.map(|k| equation(worker, k, room)).collect());
-        };
-        let mut all = Ok(Vec::with_capacity(unknowns.len()));
-        take_from_rooms(
-            unknowns,
-            CHUNK,
-            || (LinearSystem::new(n, n_holes), Ok(Vec::new())),
-            work,
-            |made| {
-                for (room, told) in made.iter_mut() {
-                    match (&mut all, std::mem::replace(told, Ok(Vec::new()))) {
-                        (Ok(all), Ok(told)) => all.extend(told),
-                        (Ok(_), Err(error)) => all = Err(error),
-                        (Err(_), _) => {}
-                    }
-                    system.append_all_but_rows(room);
-                }
-                rows.append(made.iter().map(|(room, _)| &room.matrix).collect());
-            },
-        );
-        all
-    }
-
-    /// The system of the equations so far.
-    pub fn system(self) -> LinearSystem {
-        LinearSystem { matrix: self.rows.matrix(), ..self.system }
     }
 }
 

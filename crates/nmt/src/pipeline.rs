@@ -43,7 +43,7 @@ pub enum Stage {
 /// What an observer is told, so that whoever calls holds the clock and shows how far it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// A stage begins.
+    /// A stage begins. In the variational form stars and equations take turns, some ten thousand nodes at a time.
     Begun(Stage),
     /// A stage has ended.
     Ended(Stage),
