@@ -76,6 +76,7 @@ fn assemble_by(
         larger: BTreeMap::new(),
         sizes: vec![0; n_nodes],
         outcomes: vec![Outcome::default(); n_nodes],
+        is_met: vec![false; n_nodes],
     };
     let n = frame.roles.n_unknowns;
     let (mut made, mut firmness) = (SystemMaker::new(frame.roles), Vec::with_capacity(n));
@@ -85,7 +86,7 @@ fn assemble_by(
             observer(Event::Ended(Stage::Assemble));
         }
         observer(Event::Begun(Stage::Stencils));
-        let stencils = making.stencils(nodes_around(frame, unknowns.clone()))?;
+        let stencils = making.stencils_around(unknowns.clone())?;
         // Nodes whose values are known come along.
         observer(Event::Nodes { done: n_nodes - (n - unknowns.end), of: n_nodes });
         observer(Event::Ended(Stage::Stencils));
@@ -136,15 +137,22 @@ struct Making<'a> {
     larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that are mended
     sizes: Vec<u32>,                 // of the stars, 0 where not met yet
     outcomes: Vec<Outcome>,
+    is_met: Vec<bool>, // room for marks
 }
 
 impl Making<'_> {
     /// The equations of unknowns, ascending, each with its number.
     fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<(usize, Equation)>, MfdmError> {
-        let stencils = self.stencils(nodes_around(self.frame, unknowns.iter().copied()))?;
+        let stencils = self.stencils_around(unknowns.iter().copied())?;
         let setting: Setting = self.frame.with(&stencils);
         let weak = WeakForm::blended(&stencils, self.frame.fluxes, self.rule);
         variational::equations(&setting, &weak, unknowns)
+    }
+
+    /// The stencils whose polynomials enter the equations of unknowns.
+    fn stencils_around(&mut self, unknowns: impl Iterator<Item = usize>) -> Result<Stencils, MfdmError> {
+        let nodes = nodes_around(self.frame, unknowns, &mut self.is_met);
+        self.stencils(nodes)
     }
 
     /// The stencils of nodes, ascending, mended ones as they are by now.

@@ -79,15 +79,24 @@ fn is_soft(frame: Frame, unknown: usize, own: f64) -> bool {
     Firmness::of(own, &frame, frame.roles.node(unknown)).is_soft()
 }
 
-/// Nodes, ascending, whose polynomials enter the equations of `unknowns`: their own and those of the nodes around.
-pub(crate) fn nodes_around(frame: Frame, unknowns: impl Iterator<Item = usize>) -> Vec<NodeId> {
-    let mut is_met = vec![false; frame.mesh.cloud().n_nodes()];
+/// Nodes, ascending, whose polynomials enter the equations of `unknowns`: their own and those of the nodes around. `is_met`
+/// is false of every node, before and after.
+pub(crate) fn nodes_around(frame: Frame, unknowns: impl Iterator<Item = usize>, is_met: &mut [bool]) -> Vec<NodeId> {
+    let n_boundary = frame.mesh.cloud().n_boundary();
+    // Of consecutive unknowns those inside are nearly consecutive.
+    let (mut first, mut end) = (is_met.len(), n_boundary);
     for k in unknowns {
         for t in frame.node_tris.around(frame.roles.node(k)) {
-            frame.mesh.tri_nodes()[t.index()].iter().for_each(|node| is_met[node.index()] = true);
+            for node in frame.mesh.tri_nodes()[t.index()].map(NodeId::index) {
+                is_met[node] = true;
+                if node >= n_boundary {
+                    (first, end) = (first.min(node), end.max(node + 1));
+                }
+            }
         }
     }
-    is_met.iter().enumerate().filter(|(_, is_met)| **is_met).map(|(node, _)| NodeId::of(node)).collect()
+    let places = (0..n_boundary).chain(first..end);
+    places.filter(|node| std::mem::take(&mut is_met[*node])).map(NodeId::of).collect()
 }
 
 /// Numbers of the unknowns whose equations the polynomials of `nodes` enter: their own and those of the nodes around.

@@ -49,7 +49,8 @@ impl Operator {
         let is_anew = |k: usize| k < n_boundary || self.is_beside[k - n_boundary];
         let anew: Vec<usize> = (0..n).filter(|&k| is_anew(k)).collect();
 
-        let nodes = nodes_around(frame, anew.iter().copied());
+        let mut is_met = vec![false; frame.mesh.cloud().n_nodes()];
+        let nodes = nodes_around(frame, anew.iter().copied(), &mut is_met);
         let mut stencils = Stencils::of_some(around, params, nodes.clone(), |_| None);
         let xy = frame.mesh.xy();
         nodes.iter().try_for_each(|node| stencils.require(node.index()..node.index() + 1, xy, 1))?;

@@ -176,19 +176,40 @@ enum Numbers {
     Consecutive(Range<usize>),
     Some {
         nodes: Vec<NodeId>, // ascending
-        first: usize,       // of them
-        places: Vec<u32>,   // of each node from the first to the last; beyond the last place where a node has none
+        parts: [Places; 2], // before and after the largest gap between their numbers
     },
+}
+
+/// The places of nodes in a list.
+#[derive(Clone, Debug)]
+struct Places {
+    first: usize,  // number of the first of the nodes
+    own: Vec<u32>, // of each node from the first to the last; beyond the end of the list where a node is not in it
+}
+
+impl Places {
+    /// Those of `nodes`, ascending, from place `offset` on.
+    fn new(nodes: &[NodeId], offset: usize) -> Self {
+        let first = nodes.first().map_or(0, |node| node.index());
+        let end = nodes.last().map_or(0, |node| node.index() + 1);
+        let mut own = vec![u32::MAX; end - first];
+        (offset as u32..).zip(nodes).for_each(|(place, node)| own[node.index() - first] = place);
+        Self { first, own }
+    }
+
+    #[inline]
+    fn place(&self, node: NodeId) -> usize {
+        self.own.get(node.index().wrapping_sub(self.first)).map_or(usize::MAX, |place| *place as usize)
+    }
 }
 
 impl Numbers {
     /// The given nodes, ascending.
     fn some(nodes: Vec<NodeId>) -> Self {
-        let first = nodes.first().map_or(0, |node| node.index());
-        let end = nodes.last().map_or(0, |node| node.index() + 1);
-        let mut places = vec![u32::MAX; end - first];
-        (0..).zip(&nodes).for_each(|(place, node)| places[node.index() - first] = place);
-        Self::Some { nodes, first, places }
+        let gap = |k: &usize| nodes[*k].0 - nodes[*k - 1].0;
+        let (before, after) = nodes.split_at((1..nodes.len()).max_by_key(gap).unwrap_or(0));
+        let parts = [Places::new(before, 0), Places::new(after, before.len())];
+        Self::Some { nodes, parts }
     }
 
     fn len(&self) -> usize {
@@ -210,8 +231,12 @@ impl Numbers {
     fn place(&self, node: NodeId) -> usize {
         match self {
             Self::Consecutive(range) => node.index().wrapping_sub(range.start),
-            Self::Some { first, places, .. } => {
-                places.get(node.index().wrapping_sub(*first)).map_or(usize::MAX, |place| *place as usize)
+            Self::Some { parts: [before, after], .. } => {
+                if node.index() < after.first {
+                    before.place(node)
+                } else {
+                    after.place(node)
+                }
             }
         }
     }
