@@ -3,7 +3,7 @@
 use crate::element::Element;
 use crate::problem::Formulation;
 use crate::system::{Equation, Roles, RowSum};
-use crate::weak::{Gathered, WeakForm};
+use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::{LoopId, NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 
@@ -31,7 +31,7 @@ pub(crate) fn hole_equations(
             let of_one = ring.corners_of_one(mesh, t);
             let slopes = element.slopes();
             let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
-            weak.add(&element, slope, &mut gathered, &mut sum);
+            weak.add(TestFunction::Linear(&element, slope), &mut gathered, &mut sum);
         }
         let n_ones = |t: TriId| ring.corners_of_one(mesh, t).iter().filter(|one| **one).count() as f64;
         let integral = |t: &TriId| mesh.area(*t) * n_ones(*t) / 3.0;

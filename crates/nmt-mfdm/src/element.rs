@@ -130,7 +130,7 @@ mod tests {
                 (0..MAX_MONOMIALS).for_each(|m| by_sides[m] += way * cross(slope, side) * means[m]);
             }
             for m in 0..MAX_MONOMIALS {
-                assert!((by_sides[m] - by_points[m]).abs() < 1e-14, "corner {a}, monomial {m}"); // rounding
+                assert!((by_sides[m] - by_points[m]).abs() < 1e-15, "corner {a}, monomial {m}"); // rounding
             }
         }
     }

@@ -274,6 +274,7 @@ impl LinearSystem {
         self.rhs.clear();
         self.is_beside.clear();
         self.hole_columns.iter_mut().for_each(Vec::clear);
+        (self.known, self.is_under_way_beside) = (0.0, false);
     }
 
     /// Appends the equations of `other`, but for their rows of A.

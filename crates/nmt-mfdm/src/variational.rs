@@ -6,7 +6,7 @@ use crate::error::MfdmError;
 use crate::parallel::{Pool, map_chunks};
 use crate::system::{Equation, LinearSystem, RowSum};
 use crate::system_maker::SystemMaker;
-use crate::weak::{Gathered, WeakForm};
+use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::NodeId;
 use std::ops::Range;
 
@@ -98,8 +98,7 @@ impl<'a> EquationMaker<'a> {
             system.add(roles.of(other), coefficient);
         });
         system.end(rhs);
-        let energy = self.around.iter().map(|element| element.hat_energy(element.corner_of(node))).sum();
-        Ok(Firmness { own, energy })
+        Ok(Firmness::among(self.around.iter().copied(), node, own))
     }
 
     /// Sums up the left side of the equation with a node's hat; its right side.
@@ -107,7 +106,7 @@ impl<'a> EquationMaker<'a> {
         let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
         self.around.clear();
         self.around.extend(node_tris.around(node).iter().map(|&t| Element::new(mesh, t)));
-        self.weak.add_hat(node, &self.around, &mut self.gathered, &mut self.sum);
+        self.weak.add(TestFunction::Hat(node, &self.around), &mut self.gathered, &mut self.sum);
         source.with_hat(mesh, source_rule, fluxes, node, &self.around)
     }
 }
@@ -125,6 +124,11 @@ impl Firmness {
     /// Of an equation whose coefficient of its own node is `own`.
     pub fn of(own: f64, frame: &Frame, node: NodeId) -> Self {
         let elements = frame.node_tris.around(node).iter().map(|&t| Element::new(frame.mesh, t));
+        Self::among(elements, node, own)
+    }
+
+    /// As [`Self::of`], with the elements around the node.
+    fn among(elements: impl Iterator<Item = Element>, node: NodeId, own: f64) -> Self {
         Self { own, energy: elements.map(|element| element.hat_energy(element.corner_of(node))).sum() }
     }
 }

@@ -44,6 +44,15 @@ struct Integrals {
     by_y: Vec<f64>,
 }
 
+/// A test function v, or a part of one.
+#[derive(Clone, Copy)]
+pub(crate) enum TestFunction<'e> {
+    /// Linear on one element, with this gradient.
+    Linear(&'e Element, [f64; 2]),
+    /// The hat of a node, around which these elements are.
+    Hat(NodeId, &'e [Element]),
+}
+
 /// Room for one row, to be used again for the next.
 #[derive(Default)]
 pub(crate) struct Gathered {
@@ -150,46 +159,42 @@ impl<'a> WeakForm<'a> {
         Ok(Self { fluxes, rule, degree: rule.degree(), trial })
     }
 
-    /// Adds ∫∇F·g over an element, g constant: the row of coefficients of the nodal values.
-    pub fn add(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered, sum: &mut RowSum) {
+    /// Adds ∫∇F·∇v: the row of coefficients of the nodal values.
+    pub fn add(&self, test: TestFunction, gathered: &mut Gathered, sum: &mut RowSum) {
         match &self.trial {
             TrialGradients::Blended(stencils) => match stencils.order() {
                 // Loops of known length take half the time.
-                0 => self.add_blended::<0>(stencils, element, g, gathered, sum),
-                1 => self.add_blended::<1>(stencils, element, g, gathered, sum),
-                2 => self.add_blended::<2>(stencils, element, g, gathered, sum),
-                3 => self.add_blended::<3>(stencils, element, g, gathered, sum),
-                _ => self.add_blended::<MAX_ORDER>(stencils, element, g, gathered, sum),
+                0 => self.add_blended::<0>(stencils, test, gathered, sum),
+                1 => self.add_blended::<1>(stencils, test, gathered, sum),
+                2 => self.add_blended::<2>(stencils, test, gathered, sum),
+                3 => self.add_blended::<3>(stencils, test, gathered, sum),
+                _ => self.add_blended::<MAX_ORDER>(stencils, test, gathered, sum),
             },
-            TrialGradients::Integrated(integrals) => add_integrated(integrals, element, g, sum),
-        }
-    }
-
-    /// Adds ∫∇F·∇v of the hat v of `node`, `around` which these elements are.
-    pub fn add_hat(&self, node: NodeId, around: &[Element], gathered: &mut Gathered, sum: &mut RowSum) {
-        match &self.trial {
-            TrialGradients::Blended(stencils) => match stencils.order() {
-                0 => self.add_blended_hat::<0>(stencils, node, around, gathered, sum),
-                1 => self.add_blended_hat::<1>(stencils, node, around, gathered, sum),
-                2 => self.add_blended_hat::<2>(stencils, node, around, gathered, sum),
-                3 => self.add_blended_hat::<3>(stencils, node, around, gathered, sum),
-                _ => self.add_blended_hat::<MAX_ORDER>(stencils, node, around, gathered, sum),
+            TrialGradients::Integrated(integrals) => match test {
+                TestFunction::Linear(element, g) => add_integrated(integrals, element, g, sum),
+                TestFunction::Hat(node, around) => {
+                    around.iter().for_each(|e| add_integrated(integrals, e, e.slopes()[e.corner_of(node)], sum));
+                }
             },
-            TrialGradients::Integrated(integrals) => {
-                around.iter().for_each(|e| add_integrated(integrals, e, e.slopes()[e.corner_of(node)], sum));
-            }
         }
     }
 
     fn add_blended<const P: usize>(
         &self,
         stencils: &Stencils,
-        element: &Element,
-        g: [f64; 2],
+        test: TestFunction,
         gathered: &mut Gathered,
         sum: &mut RowSum,
     ) {
         gathered.clear();
+        match test {
+            TestFunction::Linear(element, g) => self.gather_linear::<P>(element, g, gathered),
+            TestFunction::Hat(node, around) => self.gather_hat::<P>(node, around, gathered),
+        }
+        spread::<P>(stencils, gathered, sum);
+    }
+
+    fn gather_linear<const P: usize>(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered) {
         let slots = element.nodes.map(|node| gathered.slot(node));
         if self.is_exact::<P>() {
             // ∫∇u·g over a triangle is what flows along g through its sides.
@@ -199,18 +204,9 @@ impl<'a> WeakForm<'a> {
             }
         }
         self.add_places::<P>(element, g, slots, gathered);
-        spread::<P>(stencils, gathered, sum);
     }
 
-    fn add_blended_hat<const P: usize>(
-        &self,
-        stencils: &Stencils,
-        node: NodeId,
-        around: &[Element],
-        gathered: &mut Gathered,
-        sum: &mut RowSum,
-    ) {
-        gathered.clear();
+    fn gather_hat<const P: usize>(&self, node: NodeId, around: &[Element], gathered: &mut Gathered) {
         let own = gathered.slot(node);
         for element in around {
             let corner = element.corner_of(node);
@@ -236,7 +232,6 @@ impl<'a> WeakForm<'a> {
                 gathered.add_side::<P>(flow, side, [own, k + 1]);
             }
         }
-        spread::<P>(stencils, gathered, sum);
     }
 
     /// Whether the rule integrates the blend exactly, as the sides do.
