@@ -14,7 +14,7 @@ use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
 use crate::solve::{Event, Stage};
-use crate::solver::{self, LinearSolve, Solver, direct};
+use crate::solver::{self, LinearSolve, RightSide, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
 use crate::steady::{Hold, steady};
@@ -372,13 +372,8 @@ fn solve_system(
     (choice, target): (Solver, f64),
     observer: &mut dyn FnMut(Event),
 ) -> Result<Nodal, MfdmError> {
-    let of_hole = |column: &Vec<(u32, f64)>| {
-        let mut b = vec![0.0; system.n()];
-        column.iter().for_each(|&(row, coefficient)| b[row as usize] = -coefficient);
-        b
-    };
-    let of_holes: Vec<Vec<f64>> = system.hole_columns.iter().map(of_hole).collect();
-    let right_sides: Vec<&[f64]> = std::iter::once(&system.rhs).chain(&of_holes).map(Vec::as_slice).collect();
+    let of_holes = system.hole_columns.iter().map(|column| RightSide::Column(column));
+    let right_sides: Vec<RightSide> = std::iter::once(RightSide::All(&system.rhs)).chain(of_holes).collect();
     let solver::Solutions { x, how } =
         solver::solve(system, &|| roles.places(xy), &right_sides, choice, target, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {

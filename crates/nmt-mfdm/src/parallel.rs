@@ -112,3 +112,19 @@ pub(crate) fn fill_pieces<T: Send>(out: &mut [T], size: usize, work: impl Fn(usi
     }
     out.chunks_mut(size).enumerate().for_each(|(k, piece)| work(k * size, piece));
 }
+
+/// [`fill_pieces`] of two arrays of one length at once.
+pub(crate) fn fill_pairs<A: Send, B: Send>(
+    (one, other): (&mut [A], &mut [B]),
+    size: usize,
+    work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
+) {
+    #[cfg(feature = "parallel")]
+    if one.len() > size {
+        use rayon::prelude::*;
+        let pieces = one.par_chunks_mut(size).zip(other.par_chunks_mut(size)).enumerate();
+        return pieces.for_each(|(k, (one, other))| work(k * size, one, other));
+    }
+    let pieces = one.chunks_mut(size).zip(other.chunks_mut(size)).enumerate();
+    pieces.for_each(|(k, (one, other))| work(k * size, one, other));
+}

@@ -9,9 +9,11 @@ pub(crate) mod direct;
 pub(crate) mod kernels;
 mod krylov;
 mod ordering;
+mod right_side;
 mod vector;
 
 pub use choice::{DIRECT_MAX_UNKNOWNS, Iteration, LinearSolve, Method, Solver};
+pub(crate) use right_side::RightSide;
 
 use crate::error::MfdmError;
 use crate::solve::Event;
@@ -20,6 +22,7 @@ use amg::{Hierarchy, Symmetry};
 use csr::Csr;
 use krylov::{Iterated, Limits};
 use nmt_geom::Point;
+use vector::Sides;
 
 /// Largest relative residual ‖b − Ax‖/‖b‖ that is accepted.
 ///
@@ -58,7 +61,7 @@ pub(crate) struct Solutions {
 pub(crate) fn solve(
     system: &LinearSystem,
     places: &dyn Fn() -> Vec<Point>,
-    right_sides: &[&[f64]],
+    right_sides: &[RightSide],
     choice: Solver,
     target: f64,
     observer: &mut dyn FnMut(Event),
@@ -69,7 +72,7 @@ pub(crate) fn solve(
 fn solve_within(
     system: &LinearSystem,
     places: &dyn Fn() -> Vec<Point>,
-    right_sides: &[&[f64]],
+    right_sides: &[RightSide],
     choice: Solver,
     limits: Limits,
     observer: &mut dyn FnMut(Event),
@@ -78,38 +81,66 @@ fn solve_within(
     if iterates && let Some(solutions) = iterate(&system.matrix, right_sides, limits, observer) {
         return Ok(solutions);
     }
-    let direct::Solutions { x, residual } = direct::solve(system, &places(), right_sides)?;
+    let dense: Vec<_> = right_sides.iter().map(|b| b.dense(system.n())).collect();
+    let dense: Vec<&[f64]> = dense.iter().map(|b| &**b).collect();
+    let direct::Solutions { x, residual } = direct::solve(system, &places(), &dense)?;
     let how = LinearSolve { method: Method::Direct, residual, iteration: None, fell_back: iterates };
     Ok(Solutions { x, how })
 }
 
 /// CG or BiCGSTAB with a multigrid cycle; `None` where one right side does not converge.
-fn iterate(matrix: &Csr, right_sides: &[&[f64]], limits: Limits, observer: &mut dyn FnMut(Event)) -> Option<Solutions> {
-    let mut told = |iterations, residual| observer(Event::Iteration { iterations, residual, target: limits.target });
+///
+/// Two right sides at a time go through the same passes over the matrices; more would take memory that one solution can do
+/// without.
+fn iterate(
+    matrix: &Csr,
+    right_sides: &[RightSide],
+    limits: Limits,
+    observer: &mut dyn FnMut(Event),
+) -> Option<Solutions> {
     let symmetry = if matrix.is_symmetric(SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
     let hierarchy = Hierarchy::new(matrix, symmetry)?;
-    let mut room = hierarchy.workspace();
-    let mut residual: f64 = 0.0;
-    let mut iteration =
-        Iteration { iterations: 0, levels: hierarchy.n_levels(), operator_complexity: hierarchy.operator_complexity() };
     let mut all = Vec::with_capacity(right_sides.len());
-    for b in right_sides {
-        let mut x = vec![0.0; b.len()];
-        let cycle = |r: &[f64], z: &mut [f64]| hierarchy.cycle(r, z, &mut room);
-        let iterated: Iterated = match symmetry {
-            Symmetry::Symmetric => krylov::cg(matrix, b, &mut x, limits, cycle, &mut told),
-            Symmetry::Unsymmetric => krylov::bicgstab(matrix, b, &mut x, limits, cycle, &mut told),
+    for some in right_sides.chunks(2) {
+        let (first, before) = (all.len(), all.iter().map(|one: &Iterated| one.iterations).max().unwrap_or(0));
+        let mut told = |iterations: usize, residual| {
+            let iterations = iterations.max(before);
+            observer(Event::Iteration { iterations, residual, target: limits.target });
         };
-        if iterated.residual.is_nan() || iterated.residual > MAX_RESIDUAL.max(10.0 * limits.target) {
+        match *some {
+            [one, other] => all.extend(iterate_some(matrix, (&hierarchy, symmetry), [one, other], limits, &mut told)),
+            [one] => all.extend(iterate_some(matrix, (&hierarchy, symmetry), [one], limits, &mut told)),
+            _ => {}
+        }
+        let limit = MAX_RESIDUAL.max(10.0 * limits.target);
+        if !all[first..].iter().all(|one| one.residual <= limit) {
             return None;
         }
-        iteration.iterations = iteration.iterations.max(iterated.iterations);
-        residual = residual.max(iterated.residual);
-        all.push(x);
     }
+    let iteration = Iteration {
+        iterations: all.iter().map(|one| one.iterations).max().unwrap_or(0),
+        levels: hierarchy.n_levels(),
+        operator_complexity: hierarchy.operator_complexity(),
+    };
+    let residual = all.iter().map(|one| one.residual).fold(0.0, f64::max);
     let method = if symmetry == Symmetry::Symmetric { Method::Cg } else { Method::Bicgstab };
     let how = LinearSolve { method, residual, iteration: Some(iteration), fell_back: false };
-    Some(Solutions { x: all, how })
+    Some(Solutions { x: all.into_iter().map(|one| one.x).collect(), how })
+}
+
+fn iterate_some<const K: usize>(
+    matrix: &Csr,
+    (hierarchy, symmetry): (&Hierarchy, Symmetry),
+    right_sides: [RightSide; K],
+    limits: Limits,
+    told: &mut dyn FnMut(usize, f64),
+) -> [Iterated; K] {
+    let mut room = hierarchy.workspace();
+    let cycle = move |r: &[Sides<K>], z: &mut [Sides<K>], az: &mut [Sides<K>]| hierarchy.cycle(r, z, az, &mut room);
+    match symmetry {
+        Symmetry::Symmetric => krylov::cg(matrix, right_sides, limits, cycle, told),
+        Symmetry::Unsymmetric => krylov::bicgstab(matrix, right_sides, limits, cycle, told),
+    }
 }
 
 #[cfg(test)]
@@ -151,7 +182,7 @@ mod tests {
             let (system, xy) = differences(60, wind);
             let other: Vec<f64> = (0..system.n()).map(|i| f64::from(i as u32 % 7) - 3.0).collect();
             let zero = vec![0.0; system.n()];
-            let right_sides = [&system.rhs[..], &other, &zero];
+            let right_sides = [&system.rhs[..], &other, &zero].map(RightSide::All);
             let direct = solve(&system, &|| xy.clone(), &right_sides, Solver::Auto, TARGET, &mut |_| {})?;
             assert_eq!((direct.how.method, direct.how.iteration), (Method::Direct, None));
             let iterated = solve(&system, &|| xy.clone(), &right_sides, Solver::Iterative, TARGET, &mut |_| {})?;
@@ -173,7 +204,14 @@ mod tests {
     fn what_does_not_converge_falls_back_and_says_so() -> Result<(), MfdmError> {
         let (system, xy) = differences(40, 0.2);
         let limits = Limits { iterations: 2, ..LIMITS };
-        let solutions = solve_within(&system, &|| xy.clone(), &[&system.rhs], Solver::Iterative, limits, &mut |_| {})?;
+        let solutions = solve_within(
+            &system,
+            &|| xy.clone(),
+            &[RightSide::All(&system.rhs)],
+            Solver::Iterative,
+            limits,
+            &mut |_| {},
+        )?;
         assert!(solutions.how.fell_back && solutions.how.method == Method::Direct);
         assert!(solutions.how.iteration.is_none() && solutions.how.residual < 1e-12);
         Ok(())
@@ -198,7 +236,10 @@ mod tests {
         }
         let xy: Vec<Point> = (0..n).map(|i| [f64::from(i), 0.0]).collect();
         for choice in Solver::ALL {
-            assert!(solve(&system, &|| xy.clone(), &[&system.rhs], choice, TARGET, &mut |_| {}).is_err(), "{choice:?}");
+            assert!(
+                solve(&system, &|| xy.clone(), &[RightSide::All(&system.rhs)], choice, TARGET, &mut |_| {}).is_err(),
+                "{choice:?}"
+            );
         }
     }
 
@@ -221,10 +262,12 @@ mod tests {
             }
             system.push(&Equation { row, rhs: sound.rhs[k] });
         }
-        let iterated = solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Iterative, TARGET, &mut |_| {})?;
+        let iterated =
+            solve(&system, &|| xy.clone(), &[RightSide::All(&system.rhs)], Solver::Iterative, TARGET, &mut |_| {})?;
         let iterations = iterated.how.iteration.unwrap_or_default().iterations;
         assert!((1..40).contains(&iterations), "{iterations}");
-        let direct = solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Direct, TARGET, &mut |_| {})?;
+        let direct =
+            solve(&system, &|| xy.clone(), &[RightSide::All(&system.rhs)], Solver::Direct, TARGET, &mut |_| {})?;
         assert!(largest_difference(&iterated.x[0], &direct.x[0]) < 1e-9); // residual 1e-10
         Ok(())
     }
@@ -236,8 +279,9 @@ mod tests {
         let (system, xy) = differences(200, 0.3);
         let solve = |threads: usize| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-            let mut solutions =
-                pool.install(|| solve(&system, &|| xy.clone(), &[&system.rhs], Solver::Auto, TARGET, &mut |_| {}))?;
+            let mut solutions = pool.install(|| {
+                solve(&system, &|| xy.clone(), &[RightSide::All(&system.rhs)], Solver::Auto, TARGET, &mut |_| {})
+            })?;
             assert_eq!(solutions.how.method, Method::Bicgstab);
             Ok(solutions.x.swap_remove(0))
         };

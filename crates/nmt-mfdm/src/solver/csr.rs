@@ -1,6 +1,7 @@
 //! Sparse matrices by rows, and their products.
 
 use crate::parallel::{fill_pieces, large_pieces, map_owned, take_pieces};
+use crate::solver::vector::{Sides, add_multiple};
 use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
@@ -34,8 +35,22 @@ impl<'a> Row<'a> {
 
     /// Row · x.
     #[inline]
-    pub fn dot(self, x: &[f64]) -> f64 {
-        self.entries().map(|(column, value)| value * x[column]).sum()
+    pub fn dot<const K: usize>(self, x: &[Sides<K>]) -> Sides<K> {
+        self.dot_by(|column| x[column])
+    }
+
+    /// Row · x, element by element of x.
+    #[inline(always)]
+    pub fn dot_by<const K: usize>(self, x: impl Fn(usize) -> Sides<K>) -> Sides<K> {
+        let mut sum = [0.0; K];
+        self.entries().for_each(|(column, value)| add_multiple(&mut sum, value, x(column)));
+        sum
+    }
+
+    /// The first and the last column; `None` for an empty row.
+    #[inline]
+    pub fn reach(self) -> Option<[usize; 2]> {
+        Some([*self.columns.first()? as usize, *self.columns.last()? as usize])
     }
 }
 
@@ -156,25 +171,13 @@ impl Csr {
     /// A·x.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.n_rows()];
-        self.apply_to(x, &mut y);
+        self.apply_to(x.as_chunks::<1>().0, y.as_chunks_mut::<1>().0);
         y
     }
 
     /// y = A·x.
-    pub fn apply_to(&self, x: &[f64], y: &mut [f64]) {
+    pub fn apply_to<const K: usize>(&self, x: &[Sides<K>], y: &mut [Sides<K>]) {
         fill_pieces(y, ROWS, |first, y| y.iter_mut().enumerate().for_each(|(k, y)| *y = self.row(first + k).dot(x)));
-    }
-
-    /// y += A·x.
-    pub fn add_to(&self, x: &[f64], y: &mut [f64]) {
-        fill_pieces(y, ROWS, |first, y| y.iter_mut().enumerate().for_each(|(k, y)| *y += self.row(first + k).dot(x)));
-    }
-
-    /// r = b − A·x.
-    pub fn residual_to(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
-        fill_pieces(r, ROWS, |first, r| {
-            r.iter_mut().enumerate().for_each(|(k, r)| *r = b[first + k] - self.row(first + k).dot(x));
-        });
     }
 
     /// Aᵀ.

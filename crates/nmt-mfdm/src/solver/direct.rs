@@ -4,6 +4,7 @@ use crate::error::MfdmError;
 use crate::solver::MAX_RESIDUAL;
 use crate::solver::csr::Csr;
 use crate::solver::ordering::{ColumnRows, nested_dissection};
+use crate::solver::vector::Sides;
 use crate::system::LinearSystem;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::solvers::{DenseSolveCore as _, PartialPivLu, Solve as _};
@@ -227,9 +228,9 @@ impl DenseFactors {
     }
 
     /// x = A⁻¹·b.
-    pub fn solve(&self, b: &[f64], x: &mut [f64]) {
+    pub fn solve<const K: usize>(&self, b: &[Sides<K>], x: &mut [Sides<K>]) {
         x.copy_from_slice(b);
-        self.lu.solve_in_place(MatMut::from_column_major_slice_mut(x, self.n, 1));
+        self.lu.solve_in_place(MatMut::from_row_major_slice_mut(x.as_flattened_mut(), self.n, K));
     }
 }
 

@@ -14,10 +14,11 @@ pub(crate) fn setups(system: &LinearSystem, times: usize) -> f64 {
 /// Builds them once and makes so many cycles.
 pub(crate) fn cycles(system: &LinearSystem, times: usize) -> f64 {
     let Some(hierarchy) = Hierarchy::new(&system.matrix, Symmetry::Unsymmetric) else { return 0.0 };
-    let (mut room, mut x) = (hierarchy.workspace(), vec![0.0; system.n()]);
+    let (mut room, b) = (hierarchy.workspace(), system.rhs.as_chunks::<1>().0);
+    let (mut x, mut ax) = (vec![[0.0]; b.len()], vec![[0.0]; b.len()]);
     let mut cycle = |_| {
-        hierarchy.cycle(&system.rhs, &mut x, &mut room);
-        x.iter().sum::<f64>()
+        hierarchy.cycle(b, &mut x, &mut ax, &mut room);
+        x.as_flattened().iter().sum::<f64>()
     };
     (0..times).map(&mut cycle).sum()
 }

@@ -1,10 +1,18 @@
-//! Conjugate gradients and BiCGSTAB, preconditioned; the true residual decides.
+//! Conjugate gradients and BiCGSTAB, preconditioned, for several right sides in step; the true residual decides.
 
 use crate::solver::csr::Csr;
-use crate::solver::vector::{dot, norm, update};
+use crate::solver::right_side::RightSide;
+use crate::solver::vector::{Sides, dot, norm, one_of, update};
+use std::array::from_fn;
 
 /// Iterations without halving the residual after which an iteration is given up.
 const PATIENCE: usize = 40;
+
+/// Starts at most: from the true residual, after a breakdown or where recurrence and truth have drifted apart.
+const MAX_STARTS: usize = 8;
+
+/// A scalar product below this part of the product of the norms is a breakdown.
+const BREAKDOWN: f64 = 1.0e-14;
 
 /// How far an iteration goes.
 #[derive(Clone, Copy, Debug)]
@@ -16,155 +24,199 @@ pub(crate) struct Limits {
 }
 
 /// What came of an iteration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Iterated {
+    /// The solution.
+    pub x: Vec<f64>,
     /// Iterations done.
     pub iterations: usize,
-    /// ‖b − Ax‖/‖b‖ of the x returned, computed from x.
+    /// ‖b − Ax‖/‖b‖, computed from x.
     pub residual: f64,
 }
 
-/// Counts iterations, tells them with their residuals, and says when to stop: at the cap, or where the residual has not
-/// halved for long.
-struct Watch<'a> {
-    told: &'a mut dyn FnMut(usize, f64),
+/// Where one right side stands.
+#[derive(Clone, Copy, Debug)]
+struct Watch {
     iterations: usize,
-    cap: usize,
+    residual: f64,
     best: f64,
     since: usize,
 }
 
-impl<'a> Watch<'a> {
-    fn new(limits: Limits, told: &'a mut dyn FnMut(usize, f64)) -> Self {
-        Self { told, iterations: 0, cap: limits.iterations, best: f64::INFINITY, since: 0 }
-    }
+impl Watch {
+    const NEW: Self = Self { iterations: 0, residual: f64::INFINITY, best: f64::INFINITY, since: 0 };
 
-    /// One more iteration, with the residual it left; false where there is no use in another.
-    fn goes_on(&mut self, residual: f64) -> bool {
+    /// Takes the residual after one more iteration; false where there is no use in another.
+    fn goes_on(&mut self, residual: f64, limits: Limits) -> bool {
         self.iterations += 1;
-        (self.told)(self.iterations, residual);
         if residual < 0.5 * self.best {
             (self.best, self.since) = (residual, self.iterations);
         }
-        residual.is_finite() && self.iterations < self.cap && self.iterations - self.since < PATIENCE
+        self.is_open(residual, limits)
+    }
+
+    /// Neither at the target, nor at the cap, nor where the residual has not halved for long.
+    fn is_open(&mut self, residual: f64, limits: Limits) -> bool {
+        self.residual = residual;
+        let is_tried = self.iterations >= limits.iterations || self.iterations - self.since >= PATIENCE;
+        residual > limits.target && residual.is_finite() && !is_tried
     }
 }
 
-/// Preconditioned conjugate gradients from x = 0: A and the preconditioner symmetric and positive definite.
-pub(crate) fn cg(
-    a: &Csr,
-    b: &[f64],
-    x: &mut [f64],
+/// The right sides under way. One that has come to its end rests: its x stays to the bit what it was.
+struct Progress<'a, const K: usize> {
+    right: Sides<K>, // ‖b‖
+    watches: [Watch; K],
+    /// Whether the recurrence of each goes on.
+    runs: [bool; K],
     limits: Limits,
-    mut precondition: impl FnMut(&[f64], &mut [f64]),
-    told: &mut dyn FnMut(usize, f64),
-) -> Iterated {
-    let n = b.len();
-    let right = norm(b);
-    x.fill(0.0);
-    if right == 0.0 {
-        return Iterated { iterations: 0, residual: 0.0 };
+    told: &'a mut dyn FnMut(usize, f64),
+}
+
+impl<const K: usize> Progress<'_, K> {
+    /// The norms of the residuals by the recurrence after an iteration.
+    fn take(&mut self, norms: Sides<K>) {
+        for k in 0..K {
+            self.runs[k] = self.runs[k] && self.watches[k].goes_on(norms[k] / self.right[k], self.limits);
+        }
+        self.tell();
     }
-    let (mut r, mut z, mut p, mut q) = (b.to_vec(), vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut watch = Watch::new(limits, told);
-    let mut starts = 0;
-    loop {
-        // (Re)start from the true residual.
-        starts += 1;
-        let mut rho = 0.0;
-        loop {
-            precondition(&r, &mut z);
-            let next = dot(&r, &z);
-            let beta = if rho == 0.0 { 0.0 } else { next / rho };
-            rho = next;
-            update(&mut p, |i, p| z[i] + beta * p);
-            a.apply_to(&p, &mut q);
-            let curvature = dot(&p, &q);
-            if !(rho > 0.0 && curvature > 0.0) {
-                break;
-            }
-            let alpha = rho / curvature;
-            update(x, |i, x| x + alpha * p[i]);
-            update(&mut r, |i, r| r - alpha * q[i]);
-            let residual = norm(&r) / right;
-            if residual <= limits.target || !watch.goes_on(residual) {
-                break;
-            }
-        }
-        a.residual_to(b, x, &mut r);
-        let residual = norm(&r) / right;
-        if residual <= limits.target || starts == MAX_STARTS || !watch.goes_on(residual) {
-            return Iterated { iterations: watch.iterations, residual };
-        }
+
+    /// Iterations so far and the largest residual.
+    fn tell(&mut self) {
+        let iterations = self.watches.iter().map(|watch| watch.iterations).max().unwrap_or(0);
+        let residual = self.watches.iter().map(|watch| watch.residual).filter(|r| r.is_finite()).fold(0.0, f64::max);
+        (self.told)(iterations, residual);
+    }
+
+    /// A number of each that goes on, 0 of the others.
+    fn running(&self, of: impl Fn(usize) -> f64) -> Sides<K> {
+        from_fn(|k| if self.runs[k] { of(k) } else { 0.0 })
+    }
+
+    fn stop_where(&mut self, is_stopped: impl Fn(usize) -> bool) {
+        (0..K).for_each(|k| self.runs[k] &= !is_stopped(k));
     }
 }
 
-/// Starts at most: from the true residual, after a breakdown or where recurrence and truth have drifted apart.
-const MAX_STARTS: usize = 8;
+/// Starts a recurrence from x = 0, and again from the true residual where it ends without having come to the target.
+///
+/// `recur` takes x, r = b − Ax and the progress; it returns when no right side runs any more. What it holds is given back
+/// before the solutions are parted.
+fn iterate<const K: usize>(
+    a: &Csr,
+    b: [RightSide; K],
+    limits: Limits,
+    told: &mut dyn FnMut(usize, f64),
+    mut recur: impl FnMut(&mut [Sides<K>], &mut [Sides<K>], &mut Progress<K>),
+) -> [Iterated; K] {
+    let (mut x, mut r) = (vec![[0.0; K]; a.n_rows()], vec![[0.0; K]; a.n_rows()]);
+    (0..K).for_each(|k| b[k].add_to(k, &mut r));
+    let right = norm(&r);
+    let mut progress =
+        Progress { right, watches: [Watch::NEW; K], runs: right.map(|right| right != 0.0), limits, told };
+    // 0 solves A·x = 0.
+    (0..K).filter(|k| right[*k] == 0.0).for_each(|k| progress.watches[k].residual = 0.0);
+    let mut is_open = progress.runs;
+    for _ in 0..MAX_STARTS {
+        if !is_open.contains(&true) {
+            break;
+        }
+        progress.runs = is_open;
+        recur(&mut x, &mut r, &mut progress);
+        a.apply_to(&x, &mut r);
+        update(&mut r, |_, _, ax| -ax);
+        (0..K).for_each(|k| b[k].add_to(k, &mut r));
+        let norms = norm(&r);
+        for k in 0..K {
+            is_open[k] = is_open[k] && progress.watches[k].is_open(norms[k] / right[k], limits);
+        }
+    }
+    let watches = progress.watches;
+    drop((recur, r));
+    from_fn(|k| {
+        let Watch { iterations, residual, .. } = watches[k];
+        Iterated { x: one_of(&x, k), iterations, residual }
+    })
+}
 
-/// A scalar product below this part of the product of the norms is a breakdown.
-const BREAKDOWN: f64 = 1.0e-14;
+/// Preconditioned conjugate gradients from x = 0: A and the preconditioner M⁻¹ symmetric and positive definite.
+///
+/// `precondition` takes r and makes z = M⁻¹r and A·z.
+pub(crate) fn cg<const K: usize>(
+    a: &Csr,
+    b: [RightSide; K],
+    limits: Limits,
+    mut precondition: impl FnMut(&[Sides<K>], &mut [Sides<K>], &mut [Sides<K>]),
+    told: &mut dyn FnMut(usize, f64),
+) -> [Iterated; K] {
+    let room = || vec![[0.0; K]; a.n_rows()];
+    let (mut z, mut az, mut p, mut ap) = (room(), room(), room(), room());
+    iterate(a, b, limits, told, move |x, r, progress| {
+        let mut rho = [0.0; K];
+        while progress.runs.contains(&true) {
+            precondition(r, &mut z, &mut az);
+            let next = dot(r, &z);
+            let beta = progress.running(|k| if rho[k] == 0.0 { 0.0 } else { next[k] / rho[k] });
+            rho = next;
+            update(&mut p, |i, k, p| z[i][k] + beta[k] * p);
+            update(&mut ap, |i, k, ap| az[i][k] + beta[k] * ap);
+            let curvature = dot(&p, &ap);
+            progress.stop_where(|k| !(rho[k] > 0.0 && curvature[k] > 0.0));
+            let alpha = progress.running(|k| rho[k] / curvature[k]);
+            update(x, |i, k, x| x + alpha[k] * p[i][k]);
+            update(r, |i, k, r| r - alpha[k] * ap[i][k]);
+            progress.take(norm(r));
+        }
+    })
+}
 
 /// Preconditioned BiCGSTAB (van der Vorst 1992) from x = 0, preconditioned from the right.
-pub(crate) fn bicgstab(
+///
+/// `precondition` takes r and makes z = M⁻¹r and A·z.
+pub(crate) fn bicgstab<const K: usize>(
     a: &Csr,
-    b: &[f64],
-    x: &mut [f64],
+    b: [RightSide; K],
     limits: Limits,
-    mut precondition: impl FnMut(&[f64], &mut [f64]),
+    mut precondition: impl FnMut(&[Sides<K>], &mut [Sides<K>], &mut [Sides<K>]),
     told: &mut dyn FnMut(usize, f64),
-) -> Iterated {
-    let n = b.len();
-    let right = norm(b);
-    x.fill(0.0);
-    if right == 0.0 {
-        return Iterated { iterations: 0, residual: 0.0 };
-    }
-    let mut r = b.to_vec();
-    let (mut shadow, mut p) = (r.clone(), vec![0.0; n]);
-    let (mut v, mut t, mut y) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut watch = Watch::new(limits, told);
+) -> [Iterated; K] {
+    let room = || vec![[0.0; K]; a.n_rows()];
+    let (mut p, mut v, mut t, mut y) = (room(), room(), room(), room());
     let mut starts = 0;
-    loop {
+    iterate(a, b, limits, told, move |x, r, progress| {
         starts += 1;
-        shadow.copy_from_slice(&r);
-        let shadow_norm = norm(&shadow);
-        let (mut rho, mut alpha, mut omega) = (1.0, 1.0, 1.0);
-        p.fill(0.0);
-        v.fill(0.0);
-        loop {
-            let next = dot(&shadow, &r);
-            if next.abs() <= BREAKDOWN * shadow_norm * norm(&r) {
-                break;
-            }
-            let beta = next / rho * (alpha / omega);
+        // The first residual: b itself at the first start, which is mostly the only one.
+        let again = if starts > 1 { Some(r.to_vec()) } else { None };
+        let along_shadow =
+            |x: &[Sides<K>]| again.as_ref().map_or_else(|| from_fn(|k| b[k].dot(k, x)), |shadow| dot(shadow, x));
+        let shadow_norm = norm(r);
+        let mut r_norm = shadow_norm;
+        let [mut rho, mut alpha, mut omega] = [[1.0; K]; 3];
+        p.fill([0.0; K]);
+        v.fill([0.0; K]);
+        while progress.runs.contains(&true) {
+            let next = along_shadow(r);
+            progress.stop_where(|k| next[k].abs() <= BREAKDOWN * shadow_norm[k] * r_norm[k]);
+            let beta = progress.running(|k| next[k] / rho[k] * (alpha[k] / omega[k]));
             rho = next;
-            update(&mut p, |i, p| r[i] + beta * (p - omega * v[i]));
-            precondition(&p, &mut y);
-            a.apply_to(&y, &mut v);
-            alpha = rho / dot(&shadow, &v);
-            if !alpha.is_finite() {
-                break;
-            }
-            update(x, |i, x| x + alpha * y[i]);
-            update(&mut r, |i, r| r - alpha * v[i]);
-            precondition(&r, &mut y);
-            a.apply_to(&y, &mut t);
-            let square = dot(&t, &t);
-            omega = if square > 0.0 { dot(&t, &r) / square } else { 0.0 };
-            update(x, |i, x| x + omega * y[i]);
-            update(&mut r, |i, r| r - omega * t[i]);
-            let residual = norm(&r) / right;
-            if residual <= limits.target || !watch.goes_on(residual) || omega == 0.0 {
-                break;
-            }
+            update(&mut p, |i, k, p| r[i][k] + beta[k] * (p - omega[k] * v[i][k]));
+            precondition(&p, &mut y, &mut v);
+            let along = along_shadow(&v);
+            progress.stop_where(|k| !(rho[k] / along[k]).is_finite());
+            alpha = progress.running(|k| rho[k] / along[k]);
+            update(x, |i, k, x| x + alpha[k] * y[i][k]);
+            update(r, |i, k, r| r - alpha[k] * v[i][k]);
+            precondition(r, &mut y, &mut t);
+            let (square, along) = (dot(&t, &t), dot(&t, r));
+            omega = progress.running(|k| if square[k] > 0.0 { along[k] / square[k] } else { 0.0 });
+            update(x, |i, k, x| x + omega[k] * y[i][k]);
+            update(r, |i, k, r| r - omega[k] * t[i][k]);
+            r_norm = norm(r);
+            progress.take(r_norm);
+            progress.stop_where(|k| omega[k] == 0.0);
         }
-        a.residual_to(b, x, &mut r);
-        let residual = norm(&r) / right;
-        if residual <= limits.target || starts == MAX_STARTS || !watch.goes_on(residual) {
-            return Iterated { iterations: watch.iterations, residual };
-        }
-    }
+    })
 }
 
 #[cfg(test)]
@@ -185,8 +237,12 @@ mod tests {
         of_dense(&rows)
     }
 
-    fn jacobi(r: &[f64], z: &mut [f64]) {
-        z.iter_mut().zip(r).for_each(|(z, r)| *z = r / 2.5);
+    /// One number of the diagonal for all.
+    fn jacobi<const K: usize>(a: &Csr, diagonal: f64) -> impl FnMut(&[Sides<K>], &mut [Sides<K>], &mut [Sides<K>]) {
+        move |r, z, az| {
+            z.iter_mut().zip(r).for_each(|(z, r)| *z = r.map(|r| r / diagonal));
+            a.apply_to(z, az);
+        }
     }
 
     #[test]
@@ -194,14 +250,34 @@ mod tests {
         let exact: Vec<f64> = (0..50).map(|i| f64::from(i % 7) - 2.0).collect();
         let (symmetric, other) = (tridiagonal(50, -1.0, -1.0), tridiagonal(50, -1.4, -0.8));
         for (a, is_symmetric) in [(&symmetric, true), (&symmetric, false), (&other, false)] {
-            let (b, mut x) = (a.apply(&exact), vec![7.0; 50]);
-            let done = if is_symmetric {
-                cg(a, &b, &mut x, LIMITS, jacobi, &mut |_, _| {})
+            let b = a.apply(&exact);
+            let [done] = if is_symmetric {
+                cg(a, [RightSide::All(&b)], LIMITS, jacobi(a, 2.5), &mut |_, _| {})
             } else {
-                bicgstab(a, &b, &mut x, LIMITS, jacobi, &mut |_, _| {})
+                bicgstab(a, [RightSide::All(&b)], LIMITS, jacobi(a, 2.5), &mut |_, _| {})
             };
             assert!(done.residual <= 1e-12 && done.iterations < 60, "{done:?}");
-            assert!(x.iter().zip(&exact).all(|(x, e)| (x - e).abs() < 1e-10));
+            assert!(done.x.iter().zip(&exact).all(|(x, e)| (x - e).abs() < 1e-10));
+        }
+    }
+
+    #[test]
+    fn right_sides_in_step_come_out_to_the_bit_as_alone() {
+        let (symmetric, other) = (tridiagonal(90, -1.0, -1.0), tridiagonal(90, -1.4, -0.8));
+        let hard: Vec<f64> = (0..90).map(|i| f64::from(i * i % 11) - 3.0).collect();
+        let mut easy = vec![0.0; 90]; // an iteration or two
+        easy[40] = 1e-3;
+        let (easy, zero) = (other.apply(&easy), vec![0.0; 90]);
+        let [hard, easy, zero] = [&hard, &easy, &zero].map(|b| RightSide::All(b));
+        let column = RightSide::Column(&[(7, -1.0), (30, 0.5)]);
+        for pair in [[hard, easy], [easy, hard], [zero, hard], [hard, column]] {
+            let together = bicgstab(&other, pair, LIMITS, jacobi(&other, 2.5), &mut |_, _| {});
+            let alone = pair.map(|b| bicgstab(&other, [b], LIMITS, jacobi(&other, 2.5), &mut |_, _| {}));
+            assert_eq!(together, alone.map(|[one]| one));
+            assert!(together.iter().all(|one| one.residual <= LIMITS.target));
+            let together = cg(&symmetric, pair, LIMITS, jacobi(&symmetric, 2.5), &mut |_, _| {});
+            let alone = pair.map(|b| cg(&symmetric, [b], LIMITS, jacobi(&symmetric, 2.5), &mut |_, _| {}));
+            assert_eq!(together, alone.map(|[one]| one));
         }
     }
 
@@ -214,16 +290,14 @@ mod tests {
         }
         let a = of_dense(&rows);
         let b = vec![1.0; 20];
-        let copy = |r: &[f64], z: &mut [f64]| z.copy_from_slice(r);
         for is_cg in [true, false] {
-            let mut x = vec![0.0; 20];
-            let done = if is_cg {
-                cg(&a, &b, &mut x, LIMITS, copy, &mut |_, _| {})
+            let [done] = if is_cg {
+                cg(&a, [RightSide::All(&b)], LIMITS, jacobi(&a, 1.0), &mut |_, _| {})
             } else {
-                bicgstab(&a, &b, &mut x, LIMITS, copy, &mut |_, _| {})
+                bicgstab(&a, [RightSide::All(&b)], LIMITS, jacobi(&a, 1.0), &mut |_, _| {})
             };
             assert!(done.residual > 0.1 && done.iterations <= 100, "{done:?}");
-            let left: f64 = a.apply(&x).iter().zip(&b).map(|(ax, b)| (b - ax) * (b - ax)).sum::<f64>();
+            let left: f64 = a.apply(&done.x).iter().zip(&b).map(|(ax, b)| (b - ax) * (b - ax)).sum::<f64>();
             assert!((done.residual - (left / 20.0).sqrt()).abs() < 1e-12);
         }
     }
@@ -232,8 +306,8 @@ mod tests {
     fn numbers_that_are_none_end_the_iteration() {
         let mut rows = vec![vec![0.0; 3]; 3];
         (0..3).for_each(|i| rows[i][i] = if i == 1 { f64::NAN } else { 1.0 });
-        let mut x = vec![0.0; 3];
-        let done = bicgstab(&of_dense(&rows), &[1.0; 3], &mut x, LIMITS, |r, z| z.copy_from_slice(r), &mut |_, _| {});
+        let a = of_dense(&rows);
+        let [done] = bicgstab(&a, [RightSide::All(&[1.0; 3])], LIMITS, jacobi(&a, 1.0), &mut |_, _| {});
         assert!(done.residual.is_nan() && done.iterations < 5, "{done:?}");
     }
 }
