@@ -48,7 +48,7 @@ pub enum Event {
         /// Nodes in all.
         of: usize,
     },
-    /// One more iteration of the linear solver, short of its target.
+    /// One more iteration of the linear solver; the last one may have reached its target.
     Iteration {
         /// Iterations for this right side.
         iterations: usize,

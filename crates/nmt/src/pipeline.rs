@@ -54,7 +54,8 @@ pub enum Event {
         /// Nodes in all.
         of: usize,
     },
-    /// One more iteration of the linear solver, short of its target; several right sides, one a hole, are solved in turn.
+    /// One more iteration of the linear solver; several right sides, one a hole, are solved two at a time, and the larger
+    /// residual is told.
     Iteration {
         /// Iterations for this right side.
         iterations: usize,

@@ -57,5 +57,6 @@ fn every_stage_begins_and_ends_and_tells_what_it_does_in_between() {
         // The iteration that reaches the target is the last.
         let reaching = residuals.iter().position(|residual| *residual <= 1.0);
         assert!(residuals.len() > 3 && reaching == Some(residuals.len() - 1), "{residuals:?}");
+        assert!(residuals[residuals.len() - 1] < 1e-6 * residuals[0], "{residuals:?}");
     }
 }

@@ -6,8 +6,8 @@ use std::array::from_fn;
 
 /// What belongs to each of K right sides, such as their values at one unknown.
 ///
-/// A pass over a matrix costs what reading it costs, so that two right sides take the time of one. None looks at another:
-/// each comes out as it would alone.
+/// A pass over a matrix is mostly the reading of it, so that two right sides take little more time than one. None looks at
+/// another: each comes out as it would alone.
 pub(crate) type Sides<const K: usize> = [f64; K];
 
 /// Numbers per piece: small enough to stay in the cache, large enough to hide the cost of handing it out.
