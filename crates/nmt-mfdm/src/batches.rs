@@ -77,6 +77,7 @@ fn assemble_by(
         sizes: vec![0; n_nodes],
         outcomes: vec![Outcome::default(); n_nodes],
         is_met: vec![false; n_nodes],
+        room: None,
     };
     let n = frame.roles.n_unknowns;
     let (mut made, mut firmness) = (SystemMaker::new(frame.roles), Vec::with_capacity(n));
@@ -93,7 +94,9 @@ fn assemble_by(
         observer(Event::Begun(Stage::Assemble));
         let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
         firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut made)?);
+        making.room = Some(stencils);
     }
+    making.room = None;
     let system = made.system();
     // Nodes that enter no equation have stars too.
     let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| making.sizes[node] == 0).map(NodeId::of).collect();
@@ -137,7 +140,8 @@ struct Making<'a> {
     larger: BTreeMap<NodeId, usize>, // nodes asked for, of stars that are mended
     sizes: Vec<u32>,                 // of the stars, 0 where not met yet
     outcomes: Vec<Outcome>,
-    is_met: Vec<bool>, // room for marks
+    is_met: Vec<bool>,      // room for marks
+    room: Option<Stencils>, // of the batch before
 }
 
 impl Making<'_> {
@@ -157,7 +161,8 @@ impl Making<'_> {
 
     /// The stencils of nodes, ascending, mended ones as they are by now.
     fn stencils(&mut self, nodes: Vec<NodeId>) -> Result<Stencils, MfdmError> {
-        let mut stencils = Stencils::of_some(self.around, self.params, nodes.clone(), |_| None);
+        let room = self.room.take().unwrap_or_else(|| Stencils::empty(self.params, self.around.0.metric()));
+        let mut stencils = room.for_others(self.around, nodes.clone(), |_| None);
         let xy = self.frame.mesh.xy();
         nodes.iter().try_for_each(|node| stencils.require(node.index()..node.index() + 1, xy, 1))?;
         let mended = nodes.iter().filter_map(|node| Some((*node, *self.larger.get(node)?)));

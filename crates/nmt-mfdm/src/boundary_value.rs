@@ -13,6 +13,7 @@ use crate::operator::Operator;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
+use crate::slopes::KnownSlopes;
 use crate::solve::{Event, Stage};
 use crate::solver::{self, LinearSolve, RightSide, Solver, direct};
 use crate::source::Source;
@@ -114,6 +115,7 @@ pub(crate) fn nodal_solution(
                 operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
             }
             None if is_mended(params) => assemble_in_batches(frame, around, params, &rule, observer),
+            None if is_collocated(params) => collocate_in_batches(frame, around, params, &rule, observer),
             None => assemble_at_once(frame, around, params, &rule, observer),
         }
     });
@@ -195,6 +197,33 @@ fn assemble_in_batches(
     Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
 }
 
+/// The local equations with interpolating polynomials, from stars that are made and dropped batch by batch.
+fn collocate_in_batches(
+    frame: Frame,
+    around: Around,
+    params: &SolveParams,
+    rule: &Rule,
+    observer: &mut dyn FnMut(Event),
+) -> Result<Assembled, MfdmError> {
+    let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
+    let places = (around.surroundings, around.nearest);
+    let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
+    let known = |node: NodeId| known_slopes(fluxes, around.surroundings, node);
+    let local::Batched { system, stars: report, used_stars } =
+        local::assemble_in_batches(frame, places, stars, known, observer)?;
+    // The holes' equations are weak ones, with stencils of their own.
+    let of_holes = nodes_of_equations(mesh, node_tris, roles, Formulation::Local);
+    let stencils = Stencils::of_some(places, stars, of_holes, known);
+    let weak = WeakForm::blended(&stencils, fluxes, rule);
+    let equations = hole_equations(mesh, &weak, node_tris, roles, Formulation::Local);
+    Ok(Assembled { system, equations, stars: report, used_stars, smoothing: None, holds: Vec::new() })
+}
+
+/// What a flux at a node makes known of the gradient there, in stretched coordinates.
+fn known_slopes(fluxes: &Fluxes, surroundings: &Surroundings, node: NodeId) -> Option<KnownSlopes> {
+    fluxes.of_node(node).map(|flux| flux.known(surroundings.metric().stretch()))
+}
+
 /// All other equations, from all stencils.
 fn assemble_at_once(
     frame: Frame,
@@ -206,7 +235,7 @@ fn assemble_at_once(
     let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
     let Around { surroundings, nearest, .. } = around;
     observer(Event::Begun(Stage::Stencils));
-    let stencils = stencils_of_equations(around, roles, fluxes, params, kept(params), observer)?;
+    let stencils = stencils_of_equations(around, roles, fluxes, params, observer)?;
     observer(Event::Ended(Stage::Stencils));
     observer(Event::Begun(Stage::Assemble));
     let (stars, used_stars) = (stencils.report(), stencils.used());
@@ -224,16 +253,9 @@ fn assemble_at_once(
             smoothing: params.smoothing,
         },
     };
-    // Where only the rows of ∇² are kept, the holes' equations have stencils of their own.
-    let of_holes = (kept(params) == Kept::Laplacian).then(|| {
-        let nodes = nodes_of_equations(mesh, node_tris, roles, params.formulation);
-        Stencils::of_some((surroundings, nearest), stencils.params(), nodes, |node| stencils.known_of(node))
-    });
     let weak = match params.formulation {
         Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
-        Formulation::Local | Formulation::Fem => {
-            WeakForm::blended(of_holes.as_ref().unwrap_or(&stencils), fluxes, rule)
-        }
+        Formulation::Local | Formulation::Fem => WeakForm::blended(&stencils, fluxes, rule),
     };
     let system = match (params.formulation, params.test) {
         (Formulation::Local, _) => local::assemble(&setting)?,
@@ -278,7 +300,7 @@ pub(crate) fn star_of_equations(
             own.replace(around.surroundings, around.nearest, larger.as_slice());
             own
         } else {
-            stencils_of_equations(around, &roles, fluxes, params, Kept::Derivatives, &mut |_| {})?
+            stencils_of_equations(around, &roles, fluxes, params, &mut |_| {})?
         };
         Ok(Some(NodeStar::in_stencils(mesh.cloud(), around.surroundings, &stencils, node)))
     })
@@ -295,12 +317,9 @@ fn is_mended(params: &SolveParams) -> bool {
     form == (Formulation::Variational, Trial::Blended, Test::Hat) && interpolates(params)
 }
 
-/// The rows that the equations need of every star.
-fn kept(params: &SolveParams) -> Kept {
-    match params.formulation {
-        Formulation::Local if interpolates(params) => Kept::Laplacian,
-        _ => Kept::Derivatives,
-    }
+/// Whether the equations are local ones of interpolating polynomials: rows of ∇² are all that they need of a star.
+fn is_collocated(params: &SolveParams) -> bool {
+    params.formulation == Formulation::Local && interpolates(params)
 }
 
 fn roles(conditions: Vec<NodeCondition>, mesh: &Mesh, params: &SolveParams) -> Roles {
@@ -318,7 +337,6 @@ fn stencils_of_equations(
     roles: &Roles,
     fluxes: &Fluxes,
     params: &SolveParams,
-    kept: Kept,
     observer: &mut dyn FnMut(Event),
 ) -> Result<Stencils, MfdmError> {
     let Around { mesh, surroundings, nearest, .. } = around;
@@ -332,12 +350,12 @@ fn stencils_of_equations(
         params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
     let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
     // The local equation of a node with a flux is ∇²u = −s there too, its polynomial meeting the flux.
-    let stretch = surroundings.metric().stretch();
     let known = |node: NodeId| match params.formulation {
-        Formulation::Local => fluxes.of_node(node).map(|flux| flux.known(stretch)),
+        Formulation::Local => known_slopes(fluxes, surroundings, node),
         Formulation::Variational | Formulation::Fem => None,
     };
-    let stencils = Stencils::meeting((surroundings, nearest), stars, kept, range.clone(), known, observer);
+    let around = (surroundings, nearest);
+    let stencils = Stencils::meeting(around, stars, Kept::Derivatives, range.clone(), known, observer);
     stencils.require(range, mesh.xy(), 1)?;
     if params.formulation == Formulation::Local {
         stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;

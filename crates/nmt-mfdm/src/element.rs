@@ -1,8 +1,8 @@
 //! A triangle of the mesh, and the integrals of monomials about its corners over it and along its sides.
 
-use crate::basis::{INVERSE, MAX_MONOMIALS, monomials, n_monomials, row};
+use crate::basis::{INVERSE, monomials, row};
 use crate::blend::barycentric_gradients;
-use nmt_geom::point::{dot, sub};
+use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::Mesh;
 
@@ -18,8 +18,10 @@ pub(crate) struct Element {
 impl Element {
     #[inline(always)]
     pub fn new(mesh: &Mesh, triangle: TriId) -> Self {
-        let (nodes, corners) = (mesh.tri_nodes()[triangle.index()], mesh.corners(triangle));
-        Self { triangle, nodes, corners, area: mesh.area(triangle) }
+        let nodes = mesh.tri_nodes()[triangle.index()];
+        let [a, b, c] = nodes.map(|node| mesh.xy()[node.index()]);
+        // As the mesh has it, without another look at the corners.
+        Self { triangle, nodes, corners: [a, b, c], area: cross(sub(b, a), sub(c, a)) / 2.0 }
     }
 
     /// Gradients of the hats of its nodes.
@@ -39,21 +41,33 @@ impl Element {
         }
     }
 
-    /// ∫|∇v|² of the hat of the node in a corner: the square of the opposite side over four times the area.
+    /// Its corner at one of its nodes, the two nodes that follow counter-clockwise, and the places of all three from there on.
+    #[inline(always)]
+    pub fn seen_from(&self, node: NodeId) -> (usize, [NodeId; 2], [Point; 3]) {
+        let ([a, b, c], [p, q, r]) = (self.nodes, self.corners);
+        match self.corner_of(node) {
+            0 => (0, [b, c], [p, q, r]),
+            1 => (1, [c, a], [q, r, p]),
+            _ => (2, [a, b], [r, p, q]),
+        }
+    }
+
+    /// ∫|∇v|² of the hat of one of its nodes: the square of the opposite side over four times the area.
     #[inline]
-    pub fn hat_energy(&self, corner: usize) -> f64 {
-        let opposite = sub(self.corners[(corner + 2) % 3], self.corners[(corner + 1) % 3]);
+    pub fn hat_energy_of(&self, node: NodeId) -> f64 {
+        let (_, _, [_, from, to]) = self.seen_from(node);
+        let opposite = sub(to, from);
         dot(opposite, opposite) / (4.0 * self.area)
     }
 }
 
-/// Means of λ_aφ_m along the side from a corner a to another, φ_m the monomials of degree ≤ P about a; see [`row`].
+/// Means of λ_aφ_m along the side from a corner a to another, φ_m the N monomials of degree ≤ P about a; see [`row`].
 ///
 /// At the share t of the side s, λ_a is 1 − t and φ_m, of degree d, tᵈ times what it is at the end: the mean is
 /// φ_m(s)/((d + 1)(d + 2)). About the other end s is −s, so that the means of odd degree change their sign.
 #[inline(always)]
-pub(crate) fn side_means<const P: usize>(side: [f64; 2]) -> [f64; MAX_MONOMIALS] {
-    let mut means = [0.0; MAX_MONOMIALS];
+pub(crate) fn side_means<const P: usize, const N: usize>(side: [f64; 2]) -> [f64; N] {
+    let mut means = [0.0; N];
     monomials(side, P, &mut means);
     for d in 0..P + 1 {
         (0..d + 1).for_each(|b| means[row(d - b, b)] *= INVERSE[d + 1] * INVERSE[d + 2]);
@@ -61,22 +75,22 @@ pub(crate) fn side_means<const P: usize>(side: [f64; 2]) -> [f64; MAX_MONOMIALS]
     means
 }
 
-/// ∫φ_m and ∫λ_aφ_m, φ_m the monomials of degree ≤ P about a corner a in (x − x_a, y − y_a); see [`row`].
-pub(crate) struct CornerIntegrals<const P: usize> {
-    plain: [f64; MAX_MONOMIALS],
-    with_own: [f64; MAX_MONOMIALS],
+/// ∫φ_m and ∫λ_aφ_m, φ_m the N monomials of degree ≤ P about a corner a in (x − x_a, y − y_a); see [`row`].
+pub(crate) struct CornerIntegrals<const P: usize, const N: usize> {
+    plain: [f64; N],
+    with_own: [f64; N],
 }
 
-impl<const P: usize> CornerIntegrals<P> {
+impl<const P: usize, const N: usize> CornerIntegrals<P, N> {
     /// By places with weights, in the coordinates of an element and about its corner `a`.
     pub fn of_places(element: &Element, a: usize, places: impl Iterator<Item = ([f64; 3], f64)>) -> Self {
         let [s, t] = [1, 2].map(|next| sub(element.corners[(a + next) % 3], element.corners[a]));
         let mut integrals = Self::ZERO;
-        let mut basis = [0.0; MAX_MONOMIALS];
+        let mut basis = [0.0; N];
         for (lambda, weight) in places {
             let [by_s, by_t] = [1, 2].map(|next| lambda[(a + next) % 3]);
             monomials([0, 1].map(|d| by_s * s[d] + by_t * t[d]), P, &mut basis);
-            for (m, value) in basis.iter().enumerate().take(n_monomials(P)) {
+            for (m, value) in basis.iter().enumerate() {
                 integrals.plain[m] += weight * value;
                 integrals.with_own[m] += weight * lambda[a] * value;
             }
@@ -84,11 +98,11 @@ impl<const P: usize> CornerIntegrals<P> {
         integrals
     }
 
-    const ZERO: Self = Self { plain: [0.0; MAX_MONOMIALS], with_own: [0.0; MAX_MONOMIALS] };
+    const ZERO: Self = Self { plain: [0.0; N], with_own: [0.0; N] };
 
     /// Adds ∫g·∇(λ_aφ_m), g constant, to `moments`; `along` is g·∇λ_a.
     #[inline(always)]
-    pub fn add_along(&self, g: [f64; 2], along: f64, moments: &mut [f64; MAX_MONOMIALS]) {
+    pub fn add_along(&self, g: [f64; 2], along: f64, moments: &mut [f64; N]) {
         for d in 0..P + 1 {
             for b in 0..d + 1 {
                 // The derivative of hᵃkᵇ/(a! b!) along h is the monomial (a − 1, b).
@@ -103,9 +117,8 @@ impl<const P: usize> CornerIntegrals<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::MAX_ORDER;
+    use crate::basis::{MAX_MONOMIALS, MAX_ORDER};
     use crate::gauss::Rule;
-    use nmt_geom::point::cross;
 
     #[test]
     fn the_flow_through_the_sides_is_that_of_a_rule_that_is_exact() {
@@ -121,12 +134,12 @@ mod tests {
         for a in 0..3 {
             let (mut by_points, mut by_sides) = ([0.0; MAX_MONOMIALS], [0.0; MAX_MONOMIALS]);
             let places = rule.points.iter().zip(&rule.weights).map(|(lambda, weight)| (*lambda, weight * element.area));
-            let integrals = CornerIntegrals::<MAX_ORDER>::of_places(&element, a, places);
+            let integrals = CornerIntegrals::<MAX_ORDER, MAX_MONOMIALS>::of_places(&element, a, places);
             integrals.add_along(slope, dot(slope, element.slopes()[a]), &mut by_points);
             // λ_a is 0 on the third side.
             for (other, way) in [((a + 1) % 3, 1.0), ((a + 2) % 3, -1.0)] {
                 let side = sub(corners[other], corners[a]);
-                let means = side_means::<MAX_ORDER>(side);
+                let means = side_means::<MAX_ORDER, MAX_MONOMIALS>(side);
                 (0..MAX_MONOMIALS).for_each(|m| by_sides[m] += way * cross(slope, side) * means[m]);
             }
             for m in 0..MAX_MONOMIALS {

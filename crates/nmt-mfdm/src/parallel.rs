@@ -46,26 +46,6 @@ pub(crate) fn take_pieces<T: Send>(
     }
 }
 
-/// Pieces that are held at a time by [`take_from_rooms`].
-const ROOMS: usize = 64;
-
-/// [`take_pieces`] whose results are made in the same few rooms again and again, and taken together.
-pub(crate) fn take_from_rooms<T: Send>(
-    range: Range<usize>,
-    size: usize,
-    room: impl Fn() -> T,
-    work: impl Fn(Range<usize>, &mut T) + Sync + Send,
-    mut take: impl FnMut(&mut [T]),
-) {
-    let mut rooms: Vec<T> = (0..range.len().div_ceil(size).min(ROOMS)).map(|_| room()).collect();
-    for first in range.clone().step_by(ROOMS * size) {
-        let pieces = (range.end - first).div_ceil(size).min(ROOMS);
-        let piece = |k: usize| first + k * size..(first + (k + 1) * size).min(range.end);
-        fill_pieces(&mut rooms[..pieces], 1, |k, rooms| rooms.iter_mut().for_each(|room| work(piece(k), room)));
-        take(&mut rooms[..pieces]);
-    }
-}
-
 /// What pieces of work need and leave as they found it, such as large rooms: as many as are at work at once.
 pub(crate) struct Pool<W, F: Fn() -> W> {
     idle: Mutex<Vec<W>>,

@@ -19,7 +19,7 @@ use crate::error::MfdmError;
 use crate::solve::Event;
 use crate::system::LinearSystem;
 use amg::{Hierarchy, Symmetry};
-use csr::Csr;
+use csr::{Csr, Diagonal};
 use krylov::{Iterated, Limits};
 use nmt_geom::Point;
 use vector::Sides;
@@ -98,8 +98,10 @@ fn iterate(
     limits: Limits,
     observer: &mut dyn FnMut(Event),
 ) -> Option<Solutions> {
-    let symmetry = if matrix.is_symmetric(SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
-    let hierarchy = Hierarchy::new(matrix, symmetry)?;
+    let diagonal = Diagonal::new(matrix);
+    let symmetry =
+        if matrix.is_symmetric(&diagonal, SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
+    let hierarchy = Hierarchy::new(matrix, diagonal, symmetry)?;
     let mut all = Vec::with_capacity(right_sides.len());
     for some in right_sides.chunks(2) {
         let (first, before) = (all.len(), all.iter().map(|one: &Iterated| one.iterations).max().unwrap_or(0));

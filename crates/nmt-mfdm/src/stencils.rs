@@ -291,7 +291,8 @@ impl Stencils {
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
         observer: &mut dyn FnMut(Event),
     ) -> Self {
-        Self::of_numbers(around, params, kept, Numbers::Consecutive(range), known, observer)
+        let empty = Self::empty(params, around.0.metric());
+        empty.made_of(around, kept, Numbers::Consecutive(range), known, observer)
     }
 
     /// As [`Self::new`] of the given nodes, ascending, meeting what is `known` of their gradients.
@@ -301,25 +302,48 @@ impl Stencils {
         nodes: Vec<NodeId>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
     ) -> Self {
-        Self::of_numbers(around, params, Kept::Derivatives, Numbers::some(nodes), known, &mut |_| {})
+        Self::empty(params, around.0.metric()).for_others(around, nodes, known)
     }
 
-    fn of_numbers(
+    /// Those of other nodes, ascending, in the room of these.
+    pub(crate) fn for_others(
+        self,
+        around: (&Surroundings, &Nearest),
+        nodes: Vec<NodeId>,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+    ) -> Self {
+        self.made_of(around, Kept::Derivatives, Numbers::some(nodes), known, &mut |_| {})
+    }
+
+    /// Those of consecutive nodes in the room of these.
+    pub(crate) fn for_range(
+        self,
+        around: (&Surroundings, &Nearest),
+        kept: Kept,
+        range: Range<usize>,
+        known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+    ) -> Self {
+        self.made_of(around, kept, Numbers::Consecutive(range), known, &mut |_| {})
+    }
+
+    fn made_of(
+        mut self,
         (surroundings, nearest): (&Surroundings, &Nearest),
-        params: StarParams,
         kept: Kept,
         numbers: Numbers,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
         observer: &mut dyn FnMut(Event),
     ) -> Self {
-        let n = numbers.len();
-        let mut all = Self::empty(params, surroundings.metric());
+        let (n, params) = (numbers.len(), self.params);
+        let all = &mut self;
         (all.kept, all.size, all.of) = (kept, params.size, numbers);
         let n_rows = all.n_rows();
-        all.nodes = vec![NodeId(0); n * all.size];
-        all.rows = vec![0.0; n * n_rows * all.size];
-        all.stars = (0..n).map(|k| Star { start: k * params.size, size: 0, radius: 0.0 }).collect();
-        all.outcomes = vec![Outcome::default(); n];
+        // What was there is written over, but for stars of another size than most, to which nothing leads.
+        all.nodes.resize(n * all.size, NodeId(0));
+        all.rows.resize(n * n_rows * all.size, 0.0);
+        all.stars.clear();
+        all.stars.extend((0..n).map(|k| Star { start: k * params.size, size: 0, radius: 0.0 }));
+        all.outcomes.resize(n, Outcome::default());
         let size = all.size.max(1);
         let mut pieces = (0..n)
             .step_by(PIECE)
@@ -373,7 +397,7 @@ impl Stencils {
             all.append(place, &nodes, &rows);
         }
         all.known = all_known;
-        all
+        self
     }
 
     /// Gives the node at a place another star; that it had is left.
@@ -448,7 +472,8 @@ impl Stencils {
         each.map(|(place, (star, outcome))| (self.of.node(place), star.size, *outcome))
     }
 
-    fn empty(params: StarParams, metric: Metric) -> Self {
+    /// No star yet.
+    pub(crate) fn empty(params: StarParams, metric: Metric) -> Self {
         Self {
             params,
             kept: Kept::Derivatives,
@@ -488,7 +513,7 @@ impl Stencils {
     }
 
     /// The stencil of a node of the range.
-    #[inline]
+    #[inline(always)]
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
         let Star { start, size, radius } = self.stars[self.of.place(node)];
         let star = start..start + size as usize;

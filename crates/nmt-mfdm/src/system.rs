@@ -7,6 +7,7 @@ use crate::solver::csr::Csr;
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// What a node's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +106,21 @@ impl Roles {
         }
     }
 
+    /// Numbers of the unknowns among consecutive nodes.
+    pub fn unknowns_of(&self, nodes: Range<usize>) -> Range<usize> {
+        let before = |node: usize| match node.checked_sub(self.boundary.len()) {
+            Some(inside) => self.unknown_nodes.len() + inside,
+            None => self.unknown_nodes.partition_point(|unknown| unknown.index() < node),
+        };
+        before(nodes.start)..before(nodes.end)
+    }
+
+    /// Where all nodes from `least` on are unknown: what their numbers as unknowns differ by from those as nodes, wrapping.
+    pub fn shift_from(&self, least: NodeId) -> Option<u32> {
+        let shift = (self.unknown_nodes.len() as u32).wrapping_sub(self.boundary.len() as u32);
+        (least.index() >= self.boundary.len()).then_some(shift)
+    }
+
     /// The condition at a node; `None` inside.
     pub fn condition(&self, node: NodeId) -> Option<NodeCondition> {
         self.conditions.get(node.index()).copied()
@@ -188,15 +204,36 @@ impl RowSum {
     }
 
     /// Adds `coefficient` times the value of `node`.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, node: NodeId, coefficient: f64) {
         let word = node.0 / u64::BITS;
         let bits = &mut self.bits[word as usize];
         if *bits == 0 {
-            self.words.push(word);
+            Self::touch(&mut self.words, word);
         }
         *bits |= 1 << (node.0 % u64::BITS);
         self.sums[node.index()] += coefficient;
+    }
+
+    /// Out of line: most additions go where others have been.
+    #[inline(never)]
+    fn touch(words: &mut Vec<u32>, word: u32) {
+        words.push(word);
+    }
+
+    /// The coefficient of a node so far.
+    pub fn of(&self, node: NodeId) -> f64 {
+        self.sums[node.index()]
+    }
+
+    /// Number of nodes touched so far.
+    pub fn n_nodes(&self) -> usize {
+        self.words.iter().map(|&word| self.bits[word as usize].count_ones() as usize).sum()
+    }
+
+    /// No node touched so far comes before this one.
+    pub fn least(&self) -> NodeId {
+        NodeId(self.words.iter().min().map_or(0, |word| word * u64::BITS))
     }
 
     /// The row so far, by role; begins the next one.
@@ -366,6 +403,22 @@ impl LinearSystem {
             Role::Known(value) => self.known += coefficient * value,
         }
         self.is_under_way_beside = true;
+    }
+
+    /// Adds a row to the equation under way, and begins the next one.
+    pub fn add_row(&mut self, roles: &Roles, row: &mut RowSum) {
+        match roles.shift_from(row.least()) {
+            Some(shift) => {
+                let (columns, values) = self.matrix.room(row.n_nodes());
+                let mut places = columns.iter_mut().zip(values);
+                row.drain(|node, sum| {
+                    if let Some((column, value)) = places.next() {
+                        (*column, *value) = (node.0.wrapping_add(shift), sum);
+                    }
+                });
+            }
+            None => row.drain(|node, sum| self.add(roles.of(node), sum)),
+        }
     }
 
     /// Ends the equation under way.

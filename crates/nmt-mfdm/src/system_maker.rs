@@ -1,22 +1,28 @@
 //! Many equations at once, on all cores.
 
 use crate::error::MfdmError;
-use crate::parallel::{CHUNK, Pool, take_from_rooms};
+use crate::parallel::{CHUNK, Pool, fill_pairs};
 use crate::solver::csr::CsrMaker;
 use crate::system::{LinearSystem, Roles};
 use std::ops::Range;
+
+/// Pieces of equations that are made before they are put in their places.
+const ROOMS: usize = 64;
 
 /// A system whose equations are made on all cores.
 pub(crate) struct SystemMaker {
     system: LinearSystem, // without its matrix
     rows: CsrMaker,
+    rooms: Vec<LinearSystem>, // for the equations of a piece each, again and again
 }
 
 impl SystemMaker {
     /// No equation yet, of all that the unknowns will have.
     pub fn new(roles: &Roles) -> Self {
-        let system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
-        Self { system, rows: CsrMaker::new(roles.n_unknowns, roles.n_unknowns) }
+        let mut system = LinearSystem::new(roles.n_unknowns, roles.n_holes);
+        system.rhs.reserve_exact(roles.n_unknowns);
+        system.is_beside.reserve_exact(roles.n_unknowns);
+        Self { system, rows: CsrMaker::new(roles.n_unknowns, roles.n_unknowns), rooms: Vec::new() }
     }
 
     /// Appends the equations of consecutive unknowns; few are held beside the system. `equation` appends that of an unknown,
@@ -30,32 +36,29 @@ impl SystemMaker {
         worker: impl Fn() -> W + Sync + Send,
         equation: impl Fn(&mut W, usize, &mut LinearSystem) -> Result<T, MfdmError> + Sync + Send,
     ) -> Result<Vec<T>, MfdmError> {
-        let Self { system, rows } = self;
-        let (n, n_holes) = (system.matrix.n_columns(), system.hole_columns.len());
+        let Self { system, rows, rooms } = self;
         let workers = Pool::new(worker);
-        let work = |piece: Range<usize>, (room, told): &mut (LinearSystem, Result<Vec<T>, MfdmError>)| {
-            room.clear();
-            *told = workers.with(|worker| piece.map(|k| equation(worker, k, room)).collect());
-        };
-        let mut all = Ok(Vec::with_capacity(unknowns.len()));
-        take_from_rooms(
-            unknowns,
-            CHUNK,
-            || (LinearSystem::new(n, n_holes), Ok(Vec::new())),
-            work,
-            |made| {
-                for (room, told) in made.iter_mut() {
-                    match (&mut all, std::mem::replace(told, Ok(Vec::new()))) {
-                        (Ok(all), Ok(told)) => all.extend(told),
-                        (Ok(_), Err(error)) => all = Err(error),
-                        (Err(_), _) => {}
-                    }
-                    system.append_all_but_rows(room);
+        let mut all = Vec::with_capacity(unknowns.len());
+        for first in unknowns.clone().step_by(ROOMS * CHUNK) {
+            let n_pieces = (unknowns.end - first).div_ceil(CHUNK).min(ROOMS);
+            let piece = |k: usize| first + k * CHUNK..(first + (k + 1) * CHUNK).min(unknowns.end);
+            let empty = LinearSystem::new(system.matrix.n_columns(), system.hole_columns.len());
+            rooms.resize(n_pieces.max(rooms.len()), empty);
+            let rooms = &mut rooms[..n_pieces];
+            let mut told: Vec<Result<Vec<T>, MfdmError>> = (0..n_pieces).map(|_| Ok(Vec::new())).collect();
+            fill_pairs((rooms, &mut told), 1, |k, rooms, told| {
+                for (room, told) in rooms.iter_mut().zip(told) {
+                    room.clear();
+                    *told = workers.with(|worker| piece(k).map(|k| equation(worker, k, room)).collect());
                 }
-                rows.append(made.iter().map(|(room, _)| &room.matrix).collect());
-            },
-        );
-        all
+            });
+            for (room, told) in rooms.iter().zip(told) {
+                all.extend(told?);
+                system.append_all_but_rows(room);
+            }
+            rows.append(rooms.iter().map(|room| &room.matrix).collect());
+        }
+        Ok(all)
     }
 
     /// The system of the equations so far.

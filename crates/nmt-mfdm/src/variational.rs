@@ -90,15 +90,11 @@ impl<'a> EquationMaker<'a> {
             return Ok(Firmness { own, energy: 0.0 });
         }
         let rhs = self.sum_up(node)?;
-        let mut own = 0.0;
-        self.sum.drain(|other, coefficient| {
-            if other == node {
-                own = coefficient;
-            }
-            system.add(roles.of(other), coefficient);
-        });
+        let own = self.sum.of(node);
+        system.add_row(roles, &mut self.sum);
         system.end(rhs);
-        Ok(Firmness::among(self.around.iter().copied(), node, own))
+        let energy = self.around.iter().map(|element| element.hat_energy_of(node)).sum();
+        Ok(Firmness { own, energy })
     }
 
     /// Sums up the left side of the equation with a node's hat; its right side.
@@ -124,11 +120,6 @@ impl Firmness {
     /// Of an equation whose coefficient of its own node is `own`.
     pub fn of(own: f64, frame: &Frame, node: NodeId) -> Self {
         let elements = frame.node_tris.around(node).iter().map(|&t| Element::new(frame.mesh, t));
-        Self::among(elements, node, own)
-    }
-
-    /// As [`Self::of`], with the elements around the node.
-    fn among(elements: impl Iterator<Item = Element>, node: NodeId, own: f64) -> Self {
-        Self { own, energy: elements.map(|element| element.hat_energy(element.corner_of(node))).sum() }
+        Self { own, energy: elements.map(|element| element.hat_energy_of(node)).sum() }
     }
 }

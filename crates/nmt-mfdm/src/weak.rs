@@ -17,9 +17,6 @@ use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, barycentric};
 
-/// What a nodal polynomial contributes by its derivatives at the node.
-type Moments = [f64; MAX_MONOMIALS];
-
 /// Integrates the weak form.
 pub(crate) struct WeakForm<'a> {
     fluxes: &'a Fluxes,
@@ -57,7 +54,7 @@ pub(crate) enum TestFunction<'e> {
 #[derive(Default)]
 pub(crate) struct Gathered {
     nodes: Vec<NodeId>, // whose polynomials enter
-    moments: Vec<Moments>,
+    moments: Vec<f64>,  // what each contributes by its derivatives at its node, shape (n, n_monomials)
     spokes: Vec<Spoke>, // from the node of a hat, in slot 0, to the others; shape (n - 1,)
     of_star: Vec<f64>,  // of one of these nodes
 }
@@ -78,19 +75,19 @@ impl Gathered {
 
     /// Place of the moments of a node, which are 0 at first.
     #[inline(always)]
-    fn slot(&mut self, node: NodeId) -> usize {
+    fn slot<const N: usize>(&mut self, node: NodeId) -> usize {
         // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
         self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
             self.nodes.push(node);
-            self.moments.push([0.0; MAX_MONOMIALS]);
+            self.moments.extend([0.0; N]);
             self.nodes.len() - 1
         })
     }
 
     /// As [`Self::slot`] for a node that `side` leads to from that of the hat, adding to the flow through the side.
     #[inline(always)]
-    fn slot_at(&mut self, node: NodeId, side: [f64; 2], flow: f64) -> usize {
-        let slot = self.slot(node);
+    fn slot_at<const N: usize>(&mut self, node: NodeId, side: [f64; 2], flow: f64) -> usize {
+        let slot = self.slot::<N>(node);
         match self.spokes.get_mut(slot - 1) {
             Some(spoke) => spoke.flow += flow,
             None => self.spokes.push(Spoke { side, flow }),
@@ -101,14 +98,14 @@ impl Gathered {
     /// Adds what flows through the side from the node in slot `from` to that in `to`: `flow` times the mean of u, which blends
     /// the polynomials of the two, along it.
     #[inline(always)]
-    fn add_side<const P: usize>(&mut self, flow: f64, side: [f64; 2], [from, to]: [usize; 2]) {
-        let means = side_means::<P>(side);
+    fn add_side<const P: usize, const N: usize>(&mut self, flow: f64, side: [f64; 2], [from, to]: [usize; 2]) {
+        let means = side_means::<P, N>(side);
+        let moments = self.moments.as_chunks_mut::<N>().0;
+        (0..N).for_each(|m| moments[from][m] += flow * means[m]);
+        let to = &mut moments[to];
         let mut way_back = flow;
         for d in 0..P + 1 {
-            for m in (0..d + 1).map(|b| row(d - b, b)) {
-                self.moments[from][m] += flow * means[m];
-                self.moments[to][m] += way_back * means[m];
-            }
+            (0..d + 1).for_each(|b| to[row(d - b, b)] += way_back * means[row(d - b, b)]);
             way_back = -way_back;
         }
     }
@@ -164,11 +161,11 @@ impl<'a> WeakForm<'a> {
         match &self.trial {
             TrialGradients::Blended(stencils) => match stencils.order() {
                 // Loops of known length take half the time.
-                0 => self.add_blended::<0>(stencils, test, gathered, sum),
-                1 => self.add_blended::<1>(stencils, test, gathered, sum),
-                2 => self.add_blended::<2>(stencils, test, gathered, sum),
-                3 => self.add_blended::<3>(stencils, test, gathered, sum),
-                _ => self.add_blended::<MAX_ORDER>(stencils, test, gathered, sum),
+                0 => self.add_blended::<0, { n_monomials(0) }>(stencils, test, gathered, sum),
+                1 => self.add_blended::<1, { n_monomials(1) }>(stencils, test, gathered, sum),
+                2 => self.add_blended::<2, { n_monomials(2) }>(stencils, test, gathered, sum),
+                3 => self.add_blended::<3, { n_monomials(3) }>(stencils, test, gathered, sum),
+                _ => self.add_blended::<MAX_ORDER, MAX_MONOMIALS>(stencils, test, gathered, sum),
             },
             TrialGradients::Integrated(integrals) => match test {
                 TestFunction::Linear(element, g) => add_integrated(integrals, element, g, sum),
@@ -179,7 +176,7 @@ impl<'a> WeakForm<'a> {
         }
     }
 
-    fn add_blended<const P: usize>(
+    fn add_blended<const P: usize, const N: usize>(
         &self,
         stencils: &Stencils,
         test: TestFunction,
@@ -188,48 +185,50 @@ impl<'a> WeakForm<'a> {
     ) {
         gathered.clear();
         match test {
-            TestFunction::Linear(element, g) => self.gather_linear::<P>(element, g, gathered),
-            TestFunction::Hat(node, around) => self.gather_hat::<P>(node, around, gathered),
+            TestFunction::Linear(element, g) => self.gather_linear::<P, N>(element, g, gathered),
+            TestFunction::Hat(node, around) => self.gather_hat::<P, N>(node, around, gathered),
         }
-        spread::<P>(stencils, gathered, sum);
+        spread::<P, N>(stencils, gathered, sum);
     }
 
-    fn gather_linear<const P: usize>(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered) {
-        let slots = element.nodes.map(|node| gathered.slot(node));
+    fn gather_linear<const P: usize, const N: usize>(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered) {
+        let slots = element.nodes.map(|node| gathered.slot::<N>(node));
         if self.is_exact::<P>() {
             // ∫∇u·g over a triangle is what flows along g through its sides.
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 let side = sub(element.corners[b], element.corners[a]);
-                gathered.add_side::<P>(cross(g, side), side, [slots[a], slots[b]]);
+                gathered.add_side::<P, N>(cross(g, side), side, [slots[a], slots[b]]);
             }
         }
-        self.add_places::<P>(element, g, slots, gathered);
+        self.add_places::<P, N>(element, g, slots, gathered);
     }
 
-    fn gather_hat<const P: usize>(&self, node: NodeId, around: &[Element], gathered: &mut Gathered) {
-        let own = gathered.slot(node);
+    fn gather_hat<const P: usize, const N: usize>(&self, node: NodeId, around: &[Element], gathered: &mut Gathered) {
+        let own = gathered.slot::<N>(node);
+        let is_by_sides_alone = self.is_exact::<P>() && self.fluxes.slivers.is_empty();
         for element in around {
-            let corner = element.corner_of(node);
-            let [at, from, to] = [0, 1, 2].map(|next| element.corners[(corner + next) % 3]);
+            let (corner, [next, last], [at, from, to]) = element.seen_from(node);
             let (opposite, factor) = (sub(to, from), -0.5 / element.area);
             // The gradient of the hat is normal to the opposite side, and 1 over the height.
             let flow = |side: [f64; 2]| factor * dot(opposite, side);
             let (out, back) = (sub(from, at), sub(to, at));
-            let [next, last] = [1, 2].map(|next| element.nodes[(corner + next) % 3]);
-            let slots = [gathered.slot_at(next, out, flow(out)), gathered.slot_at(last, back, -flow(back))];
+            let slots = [gathered.slot_at::<N>(next, out, flow(out)), gathered.slot_at::<N>(last, back, -flow(back))];
             if self.is_exact::<P>() {
-                gathered.add_side::<P>(flow(opposite), opposite, slots);
+                gathered.add_side::<P, N>(flow(opposite), opposite, slots);
+            }
+            if is_by_sides_alone {
+                continue;
             }
             let mut of_corners = [own; 3];
             (of_corners[(corner + 1) % 3], of_corners[(corner + 2) % 3]) = (slots[0], slots[1]);
             if !self.is_exact::<P>() || !of_triangle(&self.fluxes.slivers, element.triangle).is_empty() {
-                self.add_places::<P>(element, element.slopes()[corner], of_corners, gathered);
+                self.add_places::<P, N>(element, element.slopes()[corner], of_corners, gathered);
             }
         }
         if self.is_exact::<P>() {
             for k in 0..gathered.spokes.len() {
                 let Spoke { side, flow } = gathered.spokes[k];
-                gathered.add_side::<P>(flow, side, [own, k + 1]);
+                gathered.add_side::<P, N>(flow, side, [own, k + 1]);
             }
         }
     }
@@ -240,15 +239,21 @@ impl<'a> WeakForm<'a> {
     }
 
     /// Adds what the rule integrates, where it is not exact, and what lies beyond an element's segments.
-    fn add_places<const P: usize>(&self, element: &Element, g: [f64; 2], slots: [usize; 3], gathered: &mut Gathered) {
+    fn add_places<const P: usize, const N: usize>(
+        &self,
+        element: &Element,
+        g: [f64; 2],
+        slots: [usize; 3],
+        gathered: &mut Gathered,
+    ) {
         let points = self.rule.points.iter().zip(&self.rule.weights).filter(|_| !self.is_exact::<P>());
         let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
         let slivers = of_triangle(&self.fluxes.slivers, element.triangle).iter();
         let beyond = slivers.map(|sample| (barycentric(element.corners, sample.at), sample.weight));
         let slopes = element.slopes();
         for (a, slot) in slots.into_iter().enumerate() {
-            let integrals = CornerIntegrals::<P>::of_places(element, a, points.clone().chain(beyond.clone()));
-            integrals.add_along(g, dot(g, slopes[a]), &mut gathered.moments[slot]);
+            let integrals = CornerIntegrals::<P, N>::of_places(element, a, points.clone().chain(beyond.clone()));
+            integrals.add_along(g, dot(g, slopes[a]), &mut gathered.moments.as_chunks_mut::<N>().0[slot]);
         }
     }
 }
@@ -261,21 +266,22 @@ fn add_integrated(integrals: &[Integrals], element: &Element, g: [f64; 2], sum: 
 }
 
 /// Adds what the polynomials of the nodes gathered make of the nodal values.
-fn spread<const P: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mut RowSum) {
-    for (&node, moments) in gathered.nodes.iter().zip(&gathered.moments) {
+fn spread<const P: usize, const N: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mut RowSum) {
+    let stretch = stencils.metric().stretch();
+    for (&node, moments) in gathered.nodes.iter().zip(gathered.moments.as_chunks::<N>().0) {
         if stencils.interpolates() {
             sum.add(node, moments[0]);
         }
         let stencil = stencils.of(node);
         // Rows are those of scaled coordinates.
-        let scale = stencils.metric().stretch().map(|stretch| stretch / stencil.radius);
-        let mut powers = [1.0; MAX_MONOMIALS];
-        for degree in 1..=P {
+        let scale = stretch.map(|stretch| stretch / stencil.radius);
+        let mut powers = [1.0; N];
+        for degree in 1..P + 1 {
             (0..degree).for_each(|b| powers[row(degree - b, b)] = scale[0] * powers[row(degree - 1 - b, b)]);
             powers[row(0, degree)] = scale[1] * powers[row(0, degree - 1)];
         }
-        (0..n_monomials(P)).for_each(|m| powers[m] *= moments[m]);
-        let factors = &powers[stencil.first_row()..n_monomials(P)];
+        (0..N).for_each(|m| powers[m] *= moments[m]);
+        let factors = &powers[stencil.first_row()..];
         if let Ok(nodes) = <&[NodeId; USUAL]>::try_from(stencil.nodes) {
             let of_star = combined::<USUAL>(stencil.rows(), factors);
             (0..USUAL).for_each(|i| sum.add(nodes[i], of_star[i]));
@@ -292,6 +298,7 @@ fn spread<const P: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mu
 }
 
 /// The sum of rows of `N` coefficients, each times its factor.
+#[inline(always)]
 fn combined<const N: usize>(rows: &[f64], factors: &[f64]) -> [f64; N] {
     let mut total = [0.0; N];
     for (row, factor) in rows.as_chunks::<N>().0.iter().zip(factors) {

@@ -47,11 +47,59 @@ impl<'a> Row<'a> {
         sum
     }
 
+    /// Entries before column `i`; counted in a row of some tens of entries sooner than sought.
+    #[inline]
+    fn n_before(self, i: usize) -> usize {
+        self.columns.iter().filter(|column| (**column as usize) < i).count()
+    }
+
+    /// The row about column `i`, before which it has so many entries.
+    #[inline(always)]
+    pub fn parted(self, i: usize, before: u32) -> Parted<'a> {
+        let (below, from) = self.columns.split_at(before as usize);
+        let (values, rest) = self.values.split_at(before as usize);
+        let below = Row { columns: below, values };
+        match (from, rest) {
+            ([column, columns @ ..], [own, values @ ..]) if *column as usize == i => {
+                Parted { below, own: *own, above: Row { columns, values } }
+            }
+            _ => Parted { below, own: 0.0, above: Row { columns: from, values: rest } },
+        }
+    }
+
     /// The first and the last column; `None` for an empty row.
     #[inline]
     pub fn reach(self) -> Option<[usize; 2]> {
         Some([*self.columns.first()? as usize, *self.columns.last()? as usize])
     }
+}
+
+/// The diagonal of a matrix, found once.
+#[derive(Clone, Debug)]
+pub(crate) struct Diagonal {
+    /// Entries of each row before a_ii, shape (n,).
+    pub before: Vec<u32>,
+    /// a_ii, or 0, shape (n,).
+    pub values: Vec<f64>,
+}
+
+impl Diagonal {
+    pub fn new(a: &Csr) -> Self {
+        let own = |i: usize| {
+            let (row, before) = (a.row(i), a.row(i).n_before(i) as u32);
+            (before, row.parted(i, before).own)
+        };
+        let (before, values) = (0..a.n_rows()).map(own).unzip();
+        Self { before, values }
+    }
+}
+
+/// A row before its diagonal, on it and after it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parted<'a> {
+    pub below: Row<'a>,
+    pub own: f64,
+    pub above: Row<'a>,
 }
 
 /// Finds a_ji beside a_ij while rows are read in ascending order: one pass over the matrix for all.
@@ -103,6 +151,15 @@ impl Csr {
     pub fn push(&mut self, column: u32, value: f64) {
         self.columns.push(column);
         self.values.push(value);
+    }
+
+    /// Appends `n` entries to the row begun: their columns and values, to be filled in.
+    #[inline]
+    pub fn room(&mut self, n: usize) -> (&mut [u32], &mut [f64]) {
+        let first = self.columns.len();
+        self.columns.resize(first + n, 0);
+        self.values.resize(first + n, 0.0);
+        (&mut self.columns[first..], &mut self.values[first..])
     }
 
     /// Ends a row.
@@ -199,13 +256,11 @@ impl Csr {
     }
 
     /// |a_ij − a_ji| ≤ `tolerance`·(|a_ii| + |a_jj|) everywhere, an entry that is not there being 0. O(entries).
-    pub fn is_symmetric(&self, tolerance: f64) -> bool {
-        let diagonal: Vec<f64> = (0..self.n_rows()).map(|i| self.diagonal(i).abs()).collect();
+    pub fn is_symmetric(&self, diagonal: &Diagonal, tolerance: f64) -> bool {
+        let size = |i: usize| diagonal.values[i].abs();
         let mut mirror = Mirror::new(self);
         (0..self.n_rows()).all(|i| {
-            self.row(i)
-                .entries()
-                .all(|(j, value)| (value - mirror.of(i, j)).abs() <= tolerance * (diagonal[i] + diagonal[j]))
+            self.row(i).entries().all(|(j, value)| (value - mirror.of(i, j)).abs() <= tolerance * (size(i) + size(j)))
         })
     }
 
@@ -217,11 +272,8 @@ impl Csr {
 
     /// a_ii, or 0.
     pub fn diagonal(&self, i: usize) -> f64 {
-        let Row { columns, values } = self.row(i);
-        // Counted in a row of some tens of entries sooner than sought.
-        let own = i as u32;
-        let before = columns.iter().filter(|column| **column < own).count();
-        if columns.get(before) == Some(&own) { values[before] } else { 0.0 }
+        let row = self.row(i);
+        row.parted(i, row.n_before(i) as u32).own
     }
 
     /// Multiplies every column by its factor.
@@ -298,14 +350,16 @@ impl Csr {
                     }
                     outer.add(r, products.row(*number as usize));
                 }
-                outer.sort();
-                outer.end(&mut piece);
+                outer.end_sorted(&mut piece);
             }
             piece
         };
         let n_rows = restrictor.n_rows();
-        let mut all = Self::new(n);
+        // Room for more than it will have, so that nothing is moved; what is not written to costs no memory.
+        let mut all = Self::with_room(n, n_rows, self.n_entries());
         take_pieces(0..n_rows, large_pieces(n_rows).max(PRODUCT_ROWS), piece, |piece| all.append(&piece));
+        all.columns.shrink_to_fit();
+        all.values.shrink_to_fit();
         all
     }
 }
@@ -386,40 +440,57 @@ const NONE: u32 = u32::MAX;
 
 /// A row that is summed up.
 struct RowUnderWay {
-    slots: Vec<u32>, // of each column
-    entries: Vec<(u32, f64)>,
+    slots: Vec<u32>,   // of each column
+    columns: Vec<u32>, // of the first `n` slots
+    sums: Vec<f64>,    // as long; 0 from slot `n` on
+    n: usize,
+    sorted: Vec<(u32, f64)>, // room
 }
 
 impl RowUnderWay {
     fn new(n_columns: usize) -> Self {
-        Self { slots: vec![NONE; n_columns], entries: Vec::new() }
+        let slots = vec![NONE; n_columns];
+        Self { slots, columns: Vec::new(), sums: Vec::new(), n: 0, sorted: Vec::new() }
     }
 
     /// Adds a multiple of a row.
     #[inline]
     fn add(&mut self, factor: f64, row: Row) {
+        let most = self.n + row.columns.len();
+        if self.sums.len() < most {
+            self.columns.resize(2 * most, 0);
+            self.sums.resize(2 * most, 0.0);
+        }
+        // Without a branch for columns that are new: one in ten is, and none can tell which.
         for (column, value) in row.entries() {
             let slot = &mut self.slots[column];
-            if *slot == NONE {
-                *slot = self.entries.len() as u32;
-                self.entries.push((column as u32, factor * value));
-            } else {
-                self.entries[*slot as usize].1 += factor * value;
-            }
+            let is_new = *slot == NONE;
+            *slot = if is_new { self.n as u32 } else { *slot };
+            let own = *slot as usize;
+            self.columns[own] = column as u32;
+            self.sums[own] += factor * value;
+            self.n += usize::from(is_new);
         }
-    }
-
-    fn sort(&mut self) {
-        self.entries.sort_unstable_by_key(|(column, _)| *column);
     }
 
     /// Appends it to a matrix; begins the next.
     fn end(&mut self, to: &mut Csr) {
-        for (column, value) in self.entries.drain(..) {
-            self.slots[column as usize] = NONE;
-            to.push(column, value);
+        for (column, sum) in self.columns.iter().zip(&mut self.sums).take(self.n) {
+            self.slots[*column as usize] = NONE;
+            to.push(*column, std::mem::take(sum));
         }
         to.end_row();
+        self.n = 0;
+    }
+
+    /// [`Self::end`], its columns ascending.
+    fn end_sorted(&mut self, to: &mut Csr) {
+        let entries = self.columns.iter().zip(&self.sums).take(self.n);
+        self.sorted.clear();
+        self.sorted.extend(entries.map(|(column, sum)| (*column, *sum)));
+        self.sorted.sort_unstable_by_key(|(column, _)| *column);
+        self.sorted.iter().enumerate().for_each(|(k, entry)| (self.columns[k], self.sums[k]) = *entry);
+        self.end(to);
     }
 }
 
@@ -478,12 +549,16 @@ pub(crate) mod tests {
 
     #[test]
     fn symmetry_is_seen_also_where_an_entry_has_no_mirror() {
+        let is_symmetric = |rows: &[Vec<f64>]| {
+            let a = of_dense(rows);
+            a.is_symmetric(&Diagonal::new(&a), 1e-12)
+        };
         let symmetric = [vec![2.0, -1.0, 0.0], vec![-1.0, 2.0, -1.0], vec![0.0, -1.0, 2.0]];
-        assert!(of_dense(&symmetric).is_symmetric(1e-12));
+        assert!(is_symmetric(&symmetric));
         for (i, j) in [(0, 2), (2, 0), (1, 2)] {
             let mut other = symmetric.to_vec();
             other[i][j] += 1e-6;
-            assert!(!of_dense(&other).is_symmetric(1e-12));
+            assert!(!is_symmetric(&other));
         }
     }
 }

@@ -1,19 +1,22 @@
 //! Parts of the iteration, repeated so that their instructions can be counted.
 
 use super::amg::{Hierarchy, Symmetry};
+use super::csr::Diagonal;
 use crate::system::LinearSystem;
 
 /// Builds the levels so many times.
 pub(crate) fn setups(system: &LinearSystem, times: usize) -> f64 {
-    let complexity = |_| {
-        Hierarchy::new(&system.matrix, Symmetry::Unsymmetric).map_or(0.0, |hierarchy| hierarchy.operator_complexity())
-    };
+    let complexity = |_| hierarchy(system).map_or(0.0, |hierarchy| hierarchy.operator_complexity());
     (0..times).map(complexity).sum()
+}
+
+fn hierarchy(system: &LinearSystem) -> Option<Hierarchy<'_>> {
+    Hierarchy::new(&system.matrix, Diagonal::new(&system.matrix), Symmetry::Unsymmetric)
 }
 
 /// Builds them once and makes so many cycles.
 pub(crate) fn cycles(system: &LinearSystem, times: usize) -> f64 {
-    let Some(hierarchy) = Hierarchy::new(&system.matrix, Symmetry::Unsymmetric) else { return 0.0 };
+    let Some(hierarchy) = hierarchy(system) else { return 0.0 };
     let (mut room, b) = (hierarchy.workspace(), system.rhs.as_chunks::<1>().0);
     let (mut x, mut ax) = (vec![[0.0]; b.len()], vec![[0.0]; b.len()]);
     let mut cycle = |_| {

@@ -55,6 +55,7 @@ mod tests {
     use super::*;
     use crate::solver::amg::aggregate::aggregate;
     use crate::solver::amg::strength::strong;
+    use crate::solver::csr::Diagonal;
     use crate::solver::csr::tests::of_dense;
 
     #[test]
@@ -68,7 +69,8 @@ mod tests {
             _ => 0.0,
         };
         let rows: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect();
-        let strong = strong(&of_dense(&rows), 0.08);
+        let a = of_dense(&rows);
+        let strong = strong(&a, &Diagonal::new(&a), 0.08);
         assert!((0..n).all(|i| strong.matrix.row(i).columns.len() == 2));
         let aggregates = aggregate(&strong.matrix);
         let mut is_weak = vec![false; n];
