@@ -168,6 +168,25 @@ fn wishes_that_change_nothing_are_told_with_a_remedy() {
         assert_eq!(warnings(command, useful), Vec::<String>::new());
         assert_eq!(warnings(command, useless).len(), 5, "{command}");
     }
+    let alone = warnings("mesh", "growth = 0.2");
+    assert!(alone.len() == 1 && alone[0].contains("`growth` does nothing"), "{alone:?}");
+    let output = nmt(&["solve", &l_with(&directory, "growth = 0.2"), "--tolerance", "0.05", "--json"], "1");
+    assert!(output.status.code() == Some(0) && !stderr(&output).contains("does nothing"), "{}", stderr(&output));
+}
+
+#[test]
+fn growth_alone_grades_a_cloud_towards_its_short_edges() {
+    let path = scratch("growth").join("chamfer.toml");
+    let outline = "outline = [[0, 0], [2, 0], [2, 1], [1.02, 1], [1, 1.02], [1, 2], [0, 2]]";
+    let nodes = |keys: &str| {
+        std::fs::write(&path, format!("[[subdomain]]\nnodes = [21, 21]\n{keys}\n{outline}\n")).expect("a scratch file");
+        let output = nmt(&["mesh", &path.display().to_string(), "--json"], "1");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("does nothing"), "{}", stderr(&output));
+        json(&output)["subdomains"][0]["nodes"].as_u64().expect("a number of nodes")
+    };
+    let [even, fast, slow] = ["", "growth = 0.5", "growth = 0.1"].map(nodes);
+    assert!(even < fast && fast + 50 < slow, "{even} {fast} {slow}");
 }
 
 #[test]

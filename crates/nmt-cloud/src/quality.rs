@@ -41,15 +41,26 @@ pub struct Achieved {
 impl Achieved {
     /// Of the ratios of all nodes; `None` for none.
     fn of(mut ratios: Vec<f64>) -> Option<Self> {
-        ratios.sort_unstable_by(f64::total_cmp);
-        let (&min, &max) = (ratios.first()?, ratios.last()?);
-        Some(Self { min, median: ratios[ratios.len() / 2], max })
+        let middle = ratios.len() / 2;
+        let min = ratios.iter().copied().min_by(f64::total_cmp)?;
+        let max = ratios.iter().copied().max_by(f64::total_cmp)?;
+        let (_, median, _) = ratios.select_nth_unstable_by(middle, f64::total_cmp);
+        Some(Self { min, median: *median, max })
     }
 }
 
 /// Neighbours that a node's Voronoi cell is cut from at first: those of a square grid are the nearest 8, and reach a third
 /// as far as these.
 const FIRST_NEIGHBOURS: usize = 18;
+
+/// Neighbours that show at once, as a rule, that a cell has no room for a larger circle.
+const FEW_NEIGHBOURS: usize = 8;
+
+/// The same as a radius of spacings asked for: on a square lattice of such a spacing the nearest 8 are nearer.
+const FEW_REACH: f64 = 1.6;
+
+/// Nodes where the spacing asked for is widest that are looked at first: after them few cells have room for a larger circle.
+const WIDEST: usize = 64;
 
 /// A node with more neighbours than this about it stands among much denser ones, as along an edge with a count of its own: its
 /// cell is looked at only where none has been nearby.
@@ -69,8 +80,8 @@ const BOUND_REL: f64 = 1.0e-9;
 ///
 /// The largest empty circle is looked for about the Voronoi vertices in the section and about the places where sides of Voronoi
 /// cells cross the boundary; where an edge has hundreds of nodes to a spacing of the interior, not for all of them, to one
-/// per cent. O(n): a tenth of a microsecond for a node amid others of its
-/// lattice, one microsecond for others.
+/// per cent. O(n): a tenth of a microsecond for a node amid others of a
+/// uniform lattice, a quarter for others, one microsecond where a circle might be the largest.
 ///
 /// ```
 /// use nmt_cloud::{CloudParams, Section, generate, quality};
@@ -100,13 +111,19 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
     let inner = Inner::of(cloud);
     let (mut distances, mut fill) = (Distances::default(), 0.0f64);
     let mut ratios = Vec::new();
+    let asked = |node: usize| cloud.is_graded().then(|| cloud.local_spacing(NodeId::of(node)));
+    for node in widest(cloud) {
+        cells.largest_empty_circle(xy[node], &mut fill);
+    }
     for (node, &p) in xy.iter().enumerate() {
         let quick = inner.as_ref().and_then(|inner| inner.nearest_distance(node));
+        let quick = quick.or_else(|| {
+            let radius = asked(node).map_or_else(|| nearest.first_radius(p, FEW_NEIGHBOURS), |h| FEW_REACH * h);
+            cells.nearest_in_narrow_cell(p, radius, fill)
+        });
         let distance = quick.or_else(|| cells.largest_empty_circle(p, &mut fill));
         distances.add(distance.unwrap_or(0.0));
-        if cloud.is_graded() {
-            ratios.push(distance.unwrap_or(0.0) / cloud.local_spacing(NodeId::of(node)));
-        }
+        ratios.extend(asked(node).map(|asked| distance.unwrap_or(0.0) / asked));
     }
     for [a, b] in boundary.all_ends() {
         // Between two nodes of the boundary no other is nearer, unless one lies within half a segment of the middle.
@@ -128,6 +145,17 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
         nearest_variation: distances.variation(),
         achieved: Achieved::of(ratios),
     })
+}
+
+/// Some of the nodes of a graded cloud where the spacing asked for is widest; none of others.
+fn widest(cloud: &Cloud) -> Vec<usize> {
+    if !cloud.is_graded() {
+        return Vec::new();
+    }
+    let asked = |node: usize| cloud.local_spacing(NodeId::of(node));
+    let most = (0..cloud.n_nodes()).map(asked).fold(0.0, f64::max);
+    let nodes: Vec<usize> = (0..cloud.n_nodes()).filter(|node| asked(*node) >= most).collect();
+    nodes.iter().copied().step_by(nodes.len().div_ceil(WIDEST).max(1)).collect()
 }
 
 /// Least, sum and sum of squares of distances.
@@ -283,7 +311,7 @@ fn room_in_triangle([a, b, c]: [Point; 3]) -> f64 {
 struct Cells<'a> {
     nearest: &'a Nearest<'a>,
     boundary: &'a RealBoundary,
-    near: Vec<(f64, Point)>, // distance², offset from the node; in order of distance
+    near: Vec<(f64, Point)>, // distance², offset from the node
     corners: Vec<Point>,     // of the cell, offsets from the node, counter-clockwise
     next: Vec<Point>,
     last_dense: Option<(Point, f64)>, // the last node among many that was looked at, and how far
@@ -300,7 +328,8 @@ impl Cells<'_> {
         loop {
             let all = self.nearest.reaches_all(p, radius);
             self.find_neighbours(p, if all { f64::INFINITY } else { radius });
-            self.cut_cell(radius);
+            self.near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            self.cut_cell(radius, 0.0);
             let right = if all { f64::INFINITY } else { 0.5 * radius };
             let open = self.corners.iter().any(|&c| dot(c, c) > right * right && self.is_inside(p, c));
             if open || (self.near.is_empty() && !all) {
@@ -324,6 +353,23 @@ impl Cells<'_> {
             self.meet_boundary(p, right, fill);
             return self.near.first().map(|(d2, _)| d2.sqrt());
         }
+    }
+
+    /// The distance from `p` to the nearest other node, where the nodes within `radius` show that no point of its cell is farther
+    /// from it than `fill`: they cut a cell that is no smaller than its own.
+    fn nearest_in_narrow_cell(&mut self, p: Point, radius: f64, fill: f64) -> Option<f64> {
+        self.find_neighbours(p, radius);
+        let least = self.near.iter().map(|(d2, _)| *d2).min_by(f64::total_cmp)?;
+        // The nearer ones first: they cut off most.
+        let mut n_nearer = 0;
+        for k in 0..self.near.len() {
+            if self.near[k].0 <= 0.5 * radius * radius {
+                self.near.swap(n_nearer, k);
+                n_nearer += 1;
+            }
+        }
+        // The square that they are cut from reaches beyond `fill`, so that none of its own sides is left where all is nearer.
+        (fill > 0.0 && self.cut_cell(2.0 * fill, fill * fill) <= fill * fill).then(|| least.sqrt())
     }
 
     /// Raises `fill` to the distance of `p` from where the sides of its cell cross the boundary: circles about places of the
@@ -365,19 +411,19 @@ impl Cells<'_> {
                 near.push((d2, sub(q, p)));
             }
         });
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     }
 
-    /// The square of half side `radius`, cut by the bisectors of the neighbours.
-    fn cut_cell(&mut self, radius: f64) {
-        let r = radius;
+    /// The square of half side `half`, cut by the bisectors of the neighbours; the square of the distance of its farthest corner. It
+    /// may be larger than the cell where that is `enough` or less.
+    fn cut_cell(&mut self, half: f64, enough: f64) -> f64 {
+        let r = half;
         self.corners.clear();
         self.corners.extend([[-r, -r], [r, -r], [r, r], [-r, r]]);
         let mut farthest = 2.0 * r * r;
         for &(d2, q) in &self.near {
             // Beyond twice the farthest corner a bisector cuts nothing.
             if d2 > 4.0 * farthest {
-                break;
+                continue;
             }
             let beyond = |c: Point| dot(c, q) - 0.5 * d2;
             if self.corners.iter().all(|&c| beyond(c) <= 0.0) {
@@ -396,7 +442,11 @@ impl Cells<'_> {
             }
             std::mem::swap(&mut self.corners, &mut self.next);
             farthest = self.corners.iter().fold(0.0, |most, &c| dot(c, c).max(most));
+            if farthest <= enough {
+                break;
+            }
         }
+        farthest
     }
 }
 
@@ -404,7 +454,7 @@ impl Cells<'_> {
 mod tests {
     use super::*;
     use crate::section::{CloudParams, Section};
-    use crate::{Census, generate};
+    use crate::{Census, Grading, generate};
     use nmt_curve::Outline;
     use nmt_geom::{BoundaryLoop, EdgeId, NodeId};
 
@@ -432,8 +482,12 @@ mod tests {
             contour: Outline::polygon([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [3.0, 3.0], [3.0, 1.0], [0.5, 1.2]]),
             holes: vec![Outline::circle([3.5, 1.0], 0.2)],
         };
-        for (irregularity, nodes) in [(0.0, [21, 16]), (0.4, [21, 16]), (0.3, [9, 25])] {
-            let params = CloudParams { nodes, irregularity, ..CloudParams::default() };
+        let graded = || Some(Grading::default().near([3.0, 1.0], 0.01, 0.3).near([0.0, 0.0], 0.05, 0.2));
+        let even =
+            [(0.0, [21, 16]), (0.4, [21, 16]), (0.3, [9, 25])].map(|(irregularity, nodes)| (irregularity, nodes, None));
+        let uneven = [0.0, 0.3, 0.49].map(|irregularity| (irregularity, [21, 16], graded()));
+        for (irregularity, nodes, grading) in even.into_iter().chain(uneven) {
+            let params = CloudParams { nodes, irregularity, grading, ..CloudParams::default() };
             let cloud = generate(&section, &params).unwrap();
             let q = quality(&cloud).unwrap();
             let nearest = Nearest::new(cloud.xy());

@@ -10,6 +10,9 @@ const ROWS: usize = 4096;
 /// Rows per piece of a product of matrices, at least.
 const PRODUCT_ROWS: usize = 1 << 11;
 
+/// Entries of a row that a product of three matrices has room for at first: twice as many as those of fine levels have.
+const ROOM_IN_A_ROW: usize = 64;
+
 /// A sparse matrix by rows; columns ascend in a row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Csr {
@@ -356,7 +359,7 @@ impl Csr {
         };
         let n_rows = restrictor.n_rows();
         // Room for more than it will have, so that nothing is moved; what is not written to costs no memory.
-        let mut all = Self::with_room(n, n_rows, self.n_entries());
+        let mut all = Self::with_room(n, n_rows, self.n_entries().min(ROOM_IN_A_ROW * n_rows));
         take_pieces(0..n_rows, large_pieces(n_rows).max(PRODUCT_ROWS), piece, |piece| all.append(&piece));
         all.columns.shrink_to_fit();
         all.values.shrink_to_fit();

@@ -18,9 +18,10 @@ pub struct GradingSettings {
     pub density: Option<Formula>,
     /// `refine`: towards points and edges.
     pub refine: Vec<Refinement>,
-    /// `growth`: of entries of `refine` without one of their own, beside steep parts of `density`, and beside short edges.
+    /// `growth`: of entries of `refine` without one of their own, beside steep parts of `density`, beside short edges, and beside what
+    /// a tolerance refines. Alone it makes a cloud that is graded towards short edges.
     pub growth: f64,
-    /// The first of `density` and `refine`.
+    /// The first of `density`, `refine` and `growth`.
     pub place: Place,
 }
 
@@ -33,14 +34,7 @@ pub(super) fn read(
     clearance: ClearanceUnit,
 ) -> Option<GradingSettings> {
     let item = table.item.as_str();
-    let given: Vec<_> = ["density", "refine"].into_iter().filter_map(|key| Some((key, table.get(key)?))).collect();
-    let Some(&(first, value)) = given.first() else {
-        if let Some(growth) = table.get("growth") {
-            let remedy = "add `density` or `refine`, or leave it out: the spacing of a uniform cloud does not grow";
-            reader.faults.push(growth.span(), item, "`growth` is given without `density` or `refine`", remedy);
-        }
-        return None;
-    };
+    let (first, value) = ["density", "refine", "growth"].into_iter().find_map(|key| Some((key, table.get(key)?)))?;
     let place = value.span().into();
     let excluded = [
         ("division", division == Division::Chord, "division = \"chord\"", "divide its edges by \"arc\", the default"),

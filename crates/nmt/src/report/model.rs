@@ -384,7 +384,8 @@ impl Report {
         for ((name, cloud), subdomain) in clouds.zip(&problem.subdomains) {
             self.warnings.extend(warnings::of_cloud(name, cloud));
             let asked = subdomain.grading.as_ref();
-            self.warnings.extend(asked.into_iter().flat_map(|asked| wishes::without_effect(name, asked, cloud)));
+            let wishes = |asked| wishes::without_effect(name, asked, cloud, problem.solve.tolerance.is_some());
+            self.warnings.extend(asked.into_iter().flat_map(wishes));
         }
     }
 

@@ -4,14 +4,23 @@ use crate::problem::GradingSettings;
 use crate::report::text::{number, place};
 use nmt_cloud::{Cloud, Refinement, Target};
 use nmt_geom::segment::distance_to;
-use nmt_geom::{Location, Point};
+use nmt_geom::{Location, NodeId, Point};
 
-/// Warnings of `density` and of each item of `refine` that nowhere ask for less than the uniform spacing.
-pub(super) fn without_effect(name: &str, asked: &GradingSettings, cloud: &Cloud) -> Vec<String> {
+/// Warnings of `density` and of each item of `refine` that nowhere ask for less than the uniform spacing, and of a `growth` alone
+/// where nothing grows; `to_a_tolerance` tells that more may be refined.
+pub(super) fn without_effect(name: &str, asked: &GradingSettings, cloud: &Cloud, to_a_tolerance: bool) -> Vec<String> {
     let Some(lattice) = cloud.nested_lattice() else { return Vec::new() };
     let most = lattice.max_spacing();
     let mut warnings = Vec::new();
     let uniform = number(most);
+    let is_alone = asked.density.is_none() && asked.refine.is_empty();
+    let is_even = || (0..cloud.n_nodes()).all(|node| cloud.local_spacing(NodeId::of(node)) >= most);
+    if is_alone && !to_a_tolerance && is_even() {
+        warnings.push(format!(
+            "subdomain \"{name}\": `growth` does nothing: no edge is shorter than the uniform spacing of `nodes`, {uniform}, from which \
+             the spacing could grow; add `density`, `refine` or a tolerance, or leave it out"
+        ));
+    }
     if let Some(density) = &asked.density {
         let nodes = cloud.xy().iter();
         let least = nodes.map(|p| density.expression.eval(p)).fold(f64::INFINITY, f64::min);

@@ -134,7 +134,7 @@ const CASES: &[Case] = &[
         &[("irregularity = 0.25", "refine = [{ edge = \"crown\", size = 0.01 }]\nclearance = \"scaled\"")],
     ),
     case("a graph written as y", &[("curve = \"1 + 0.2*sin(pi*x)^2\"", "y = \"1 + 0.2*sin(pi*x)^2\"")]),
-    case("a growth of a uniform cloud", &[("irregularity = 0.25", "growth = 0.2")]),
+    case("a growth alone out of range", &[("irregularity = 0.25", "growth = 0.7")]),
     case("growths out of range", &[("irregularity = 0.25", "density = \"0.1\"\ngrowth = 0.7")]),
     case("a refinement that is no list", &[("irregularity = 0.25", "refine = { point = [1, 1], size = 0.01 }")]),
     case("an empty list of refinements", &[("irregularity = 0.25", "refine = []")]),
