@@ -14,8 +14,8 @@ use nmt_geom::NodeId;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Nodes whose stars are held at a time: few enough to stay in the cache until their equations are made.
-const BATCH: usize = 1 << 14;
+/// Nodes whose stars are held at a time, 5 MB.
+const BATCH: usize = 1 << 15;
 
 /// The system and what became of the stars.
 pub(crate) struct Batched {

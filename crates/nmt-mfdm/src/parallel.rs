@@ -31,7 +31,7 @@ pub(crate) fn map_pieces<T: Send>(
 }
 
 /// Pieces that are held at a time by [`take_pieces`].
-pub(crate) const BATCH: usize = 16;
+const BATCH: usize = 16;
 
 /// [`map_pieces`] whose results are taken in order, a few at a time: for results as large as memory allows.
 pub(crate) fn take_pieces<T: Send>(

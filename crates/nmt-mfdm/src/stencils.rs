@@ -3,7 +3,7 @@
 use crate::basis::{n_monomials, row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
-use crate::parallel::{BATCH, map_owned};
+use crate::parallel::map_owned;
 use crate::repair::{Demand, StarOutcome};
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
@@ -18,6 +18,9 @@ use std::ops::Range;
 
 /// Stars per piece of work.
 const PIECE: usize = 512;
+
+/// Pieces between two tellings of how many nodes are done: cores wait for each other at each.
+const AT_ONCE: usize = 64;
 
 /// Order, size and choice of stars.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -378,7 +381,7 @@ impl Stencils {
         };
         let (mut done, mut others, mut all_known) = (0, Vec::new(), BTreeMap::new());
         loop {
-            let batch: Vec<Piece> = pieces.by_ref().take(BATCH).collect();
+            let batch: Vec<Piece> = pieces.by_ref().take(AT_ONCE).collect();
             if batch.is_empty() {
                 break;
             }
