@@ -206,16 +206,25 @@ impl RowSum {
     /// Adds `coefficient` times the value of `node`.
     #[inline(always)]
     pub fn add(&mut self, node: NodeId, coefficient: f64) {
-        let word = node.0 / u64::BITS;
-        let bits = &mut self.bits[word as usize];
-        if *bits == 0 {
-            Self::touch(&mut self.words, word);
-        }
-        *bits |= 1 << (node.0 % u64::BITS);
-        self.sums[node.index()] += coefficient;
+        self.add_all(&[node], &[coefficient]);
     }
 
-    /// Out of line: most additions go where others have been.
+    /// Adds to the coefficients of several nodes.
+    #[inline(always)]
+    pub fn add_all<const N: usize>(&mut self, nodes: &[NodeId; N], coefficients: &[f64; N]) {
+        for node in nodes {
+            let word = node.0 / u64::BITS;
+            let bits = &mut self.bits[word as usize];
+            if *bits == 0 {
+                Self::touch(&mut self.words, word);
+            }
+            *bits |= 1 << (node.0 % u64::BITS);
+        }
+        nodes.iter().zip(coefficients).for_each(|(node, coefficient)| self.sums[node.index()] += coefficient);
+    }
+
+    /// Out of line: most nodes come where others have been.
+    #[cold]
     #[inline(never)]
     fn touch(words: &mut Vec<u32>, word: u32) {
         words.push(word);
