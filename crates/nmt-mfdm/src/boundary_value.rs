@@ -235,7 +235,7 @@ fn assemble_at_once(
     let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
     let Around { surroundings, nearest, .. } = around;
     observer(Event::Begun(Stage::Stencils));
-    let stencils = stencils_of_equations(around, roles, fluxes, params, observer)?;
+    let stencils = stencils_of_equations(around, fluxes, params, observer)?;
     observer(Event::Ended(Stage::Stencils));
     observer(Event::Begun(Stage::Assemble));
     let (stars, used_stars) = (stencils.report(), stencils.used());
@@ -300,7 +300,7 @@ pub(crate) fn star_of_equations(
             own.replace(around.surroundings, around.nearest, larger.as_slice());
             own
         } else {
-            stencils_of_equations(around, &roles, fluxes, params, &mut |_| {})?
+            stencils_of_equations(around, fluxes, params, &mut |_| {})?
         };
         Ok(Some(NodeStar::in_stencils(mesh.cloud(), around.surroundings, &stencils, node)))
     })
@@ -334,7 +334,6 @@ fn source_rule(params: &SolveParams) -> Rule {
 /// Stars and rows as they are chosen, before any is mended.
 fn stencils_of_equations(
     around: Around,
-    roles: &Roles,
     fluxes: &Fluxes,
     params: &SolveParams,
     observer: &mut dyn FnMut(Event),
@@ -345,18 +344,14 @@ fn stencils_of_equations(
         return Ok(Stencils::constants(n_nodes));
     }
     let stars = params.star_params(mesh.cloud(), &surroundings.metric())?;
-    // The local equations need the unknown nodes' stars alone; the weak forms need every polynomial.
-    let only_interior =
-        params.formulation == Formulation::Local && roles.n_holes == 0 && roles.n_unknowns == n_nodes - n_boundary;
-    let range = if only_interior { n_boundary..n_nodes } else { 0..n_nodes };
     // The local equation of a node with a flux is ∇²u = −s there too, its polynomial meeting the flux.
     let known = |node: NodeId| match params.formulation {
         Formulation::Local => known_slopes(fluxes, surroundings, node),
         Formulation::Variational | Formulation::Fem => None,
     };
     let around = (surroundings, nearest);
-    let stencils = Stencils::meeting(around, stars, Kept::Derivatives, range.clone(), known, observer);
-    stencils.require(range, mesh.xy(), 1)?;
+    let stencils = Stencils::meeting(around, stars, Kept::Derivatives, 0..n_nodes, known, observer);
+    stencils.require(0..n_nodes, mesh.xy(), 1)?;
     if params.formulation == Formulation::Local {
         stencils.require(n_boundary..n_nodes, mesh.xy(), 2)?;
     }

@@ -60,7 +60,7 @@ pub(crate) fn assemble_in_batches(
     for first in (first..n_nodes.max(first + 1)).step_by(BATCH) {
         let range = first..(first + BATCH).min(n_nodes);
         observer(Event::Begun(Stage::Stencils));
-        stencils = stencils.for_range(around, Kept::Laplacian, range.clone(), &known);
+        stencils = stencils.for_range(around, Kept::Laplacian, range.clone(), &known, &mut |_| {});
         stencils.require(range.clone(), mesh.xy(), 1)?;
         stencils.require(range.start.max(n_boundary)..range.end, mesh.xy(), 2)?;
         stars.join(&stencils.report());

@@ -45,17 +45,11 @@ impl Source<'_> {
         node: NodeId,
         around: &[Element],
     ) -> Result<f64, MfdmError> {
-        if let Self::Constant(value) = self
-            && fluxes.edges.is_empty()
-            && fluxes.slivers.is_empty()
-        {
-            // ∫v is a third of the triangle's area.
-            return Ok(around.iter().map(|element| value * element.area / 3.0).sum());
-        }
         let mut sum = 0.0;
         for element in around {
             let corner = element.corner_of(node);
             match self {
+                // ∫v is a third of the triangle's area.
                 Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * element.area / 3.0,
                 _ => {
                     for (p, weight) in places(mesh, rule, fluxes, element.triangle) {

@@ -294,8 +294,7 @@ impl Stencils {
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
         observer: &mut dyn FnMut(Event),
     ) -> Self {
-        let empty = Self::empty(params, around.0.metric());
-        empty.made_of(around, kept, Numbers::Consecutive(range), known, observer)
+        Self::empty(params, around.0.metric()).for_range(around, kept, range, known, observer)
     }
 
     /// As [`Self::new`] of the given nodes, ascending, meeting what is `known` of their gradients.
@@ -318,15 +317,16 @@ impl Stencils {
         self.made_of(around, Kept::Derivatives, Numbers::some(nodes), known, &mut |_| {})
     }
 
-    /// Those of consecutive nodes in the room of these.
+    /// As [`Self::meeting`], in the room of these.
     pub(crate) fn for_range(
         self,
         around: (&Surroundings, &Nearest),
         kept: Kept,
         range: Range<usize>,
         known: impl Fn(NodeId) -> Option<KnownSlopes> + Sync,
+        observer: &mut dyn FnMut(Event),
     ) -> Self {
-        self.made_of(around, kept, Numbers::Consecutive(range), known, &mut |_| {})
+        self.made_of(around, kept, Numbers::Consecutive(range), known, observer)
     }
 
     fn made_of(

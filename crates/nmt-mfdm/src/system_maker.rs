@@ -42,8 +42,8 @@ impl SystemMaker {
         for first in unknowns.clone().step_by(ROOMS * CHUNK) {
             let n_pieces = (unknowns.end - first).div_ceil(CHUNK).min(ROOMS);
             let piece = |k: usize| first + k * CHUNK..(first + (k + 1) * CHUNK).min(unknowns.end);
-            let empty = LinearSystem::new(system.matrix.n_columns(), system.hole_columns.len());
-            rooms.resize(n_pieces.max(rooms.len()), empty);
+            let room = || LinearSystem::new(system.matrix.n_columns(), system.hole_columns.len());
+            rooms.resize_with(n_pieces.max(rooms.len()), room);
             let rooms = &mut rooms[..n_pieces];
             let mut told: Vec<Result<Vec<T>, MfdmError>> = (0..n_pieces).map(|_| Ok(Vec::new())).collect();
             fill_pairs((rooms, &mut told), 1, |k, rooms, told| {

@@ -30,8 +30,12 @@ pub(crate) struct Sample {
     pub weight: f64,
 }
 
-/// The samples of a triangle, of those given by triangle.
+/// The samples of a triangle, of those given by triangle; mostly there are none at all.
+#[inline]
 pub(crate) fn of_triangle(samples: &[Sample], triangle: TriId) -> &[Sample] {
+    if samples.is_empty() {
+        return samples;
+    }
     let first = samples.partition_point(|sample| sample.triangle < triangle);
     let last = samples.partition_point(|sample| sample.triangle <= triangle);
     &samples[first..last]

@@ -206,7 +206,6 @@ impl<'a> WeakForm<'a> {
 
     fn gather_hat<const P: usize, const N: usize>(&self, node: NodeId, around: &[Element], gathered: &mut Gathered) {
         let own = gathered.slot::<N>(node);
-        let is_by_sides_alone = self.is_exact::<P>() && self.fluxes.slivers.is_empty();
         for element in around {
             let (corner, [next, last], [at, from, to]) = element.seen_from(node);
             let (opposite, factor) = (sub(to, from), -0.5 / element.area);
@@ -216,9 +215,6 @@ impl<'a> WeakForm<'a> {
             let slots = [gathered.slot_at::<N>(next, out, flow(out)), gathered.slot_at::<N>(last, back, -flow(back))];
             if self.is_exact::<P>() {
                 gathered.add_side::<P, N>(flow(opposite), opposite, slots);
-            }
-            if is_by_sides_alone {
-                continue;
             }
             let mut of_corners = [own; 3];
             (of_corners[(corner + 1) % 3], of_corners[(corner + 2) % 3]) = (slots[0], slots[1]);

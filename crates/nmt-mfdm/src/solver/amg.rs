@@ -90,9 +90,10 @@ impl<'a> Hierarchy<'a> {
             let mut restrictor = prolongator.transpose();
             if symmetry == Symmetry::Unsymmetric {
                 // Coarser levels inherit the weights of the finest.
-                let mut weights = match levels.is_empty() {
-                    true => equation_weights(&matrix, &diagonal, &is_weak),
-                    false => vec![1.0; matrix.n_rows()],
+                let mut weights = if levels.is_empty() {
+                    equation_weights(&matrix, &diagonal, &is_weak)
+                } else {
+                    vec![1.0; matrix.n_rows()]
                 };
                 // Patches have settled these equations; in a coarser one they would cancel what is sound.
                 weights.iter_mut().zip(&is_weak).filter(|(_, weak)| **weak).for_each(|(weight, _)| *weight = 0.0);

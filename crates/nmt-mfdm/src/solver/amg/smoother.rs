@@ -134,7 +134,7 @@ impl Smoother {
             let mut next = 0; // whose residual is taken next
             for k in 0..n {
                 let Parted { below, own, .. } = self.row(a, first + k);
-                let rest = less(r[k], within(below, first, k, |j| x[j]));
+                let rest = less(r[k], within(below, first, &x[..k]));
                 x[k] = self.step(first + k, rest);
                 r[k] = rest;
                 add_multiple(&mut r[k], -own, x[k]);
@@ -173,10 +173,11 @@ impl Smoother {
             let mut next = n; // its row, and those after it, have their product
             for k in (0..n).rev() {
                 let (row, own) = (a.row(first + k), self.row(a, first + k).own);
-                let before = match crosses(row, first, n) {
+                let before = if crosses(row, first, n) {
                     // Wraps to a number past the block where j comes before it.
-                    true => row.dot_by(|j| x.get(j.wrapping_sub(first)).copied().unwrap_or_else(|| old[j])),
-                    false => row.dot_by(|j| x[j - first]),
+                    row.dot_by(|j| x.get(j.wrapping_sub(first)).copied().unwrap_or_else(|| old[j]))
+                } else {
+                    row.dot_by(|j| x[j - first])
                 };
                 add_multiple(&mut x[k], 1.0, self.step(first + k, less(b[first + k], before)));
                 ax[k] = before;
@@ -245,14 +246,14 @@ impl Smoother {
     }
 }
 
-/// A part of a row · the unknowns before the `k`-th of a block from `first` on; others count as 0.
+/// A part of a row · x of consecutive unknowns from `first` on, none of the part comes after them; others count as 0.
 #[inline(always)]
-fn within<const K: usize>(part: Row, first: usize, k: usize, x: impl Fn(usize) -> Sides<K>) -> Sides<K> {
+fn within<const K: usize>(part: Row, first: usize, x: &[Sides<K>]) -> Sides<K> {
     if part.reach().is_none_or(|[least, _]| least >= first) {
-        return part.dot_by(|j| x(j - first));
+        return part.dot_by(|j| x[j - first]);
     }
-    // Wraps to a number past the block where j comes before it.
-    part.dot_by(|j| if j.wrapping_sub(first) < k { x(j - first) } else { [0.0; K] })
+    // Wraps to a number past them where j comes before.
+    part.dot_by(|j| x.get(j.wrapping_sub(first)).copied().unwrap_or([0.0; K]))
 }
 
 /// Whether a row of the block of `n` from `first` on asks for unknowns of another.
