@@ -55,80 +55,7 @@ pub(crate) fn assemble(
     observer: &mut dyn FnMut(Event),
 ) -> Result<Batched, MfdmError> {
     let a_star = n_monomials(stars.order) * stars.size;
-    assemble_by((HELD / a_star).max(LEAST), frame, around, stars, rule, observer)
-}
-
-/// [`assemble`] with `batch` equations at a time.
-fn assemble_by(
-    batch: usize,
-    frame: Frame,
-    around: (&Surroundings, &Nearest),
-    stars: StarParams,
-    rule: &Rule,
-    observer: &mut dyn FnMut(Event),
-) -> Result<Batched, MfdmError> {
-    let n_nodes = frame.mesh.cloud().n_nodes();
-    let mut making = Making {
-        frame,
-        around,
-        params: stars,
-        rule,
-        larger: BTreeMap::new(),
-        sizes: vec![0; n_nodes],
-        outcomes: vec![Outcome::default(); n_nodes],
-        is_met: vec![false; n_nodes],
-        room: None,
-    };
-    let n = frame.roles.n_unknowns;
-    let (mut made, mut firmness) = (SystemMaker::new(frame.roles), Vec::with_capacity(n));
-    for first in (0..n.max(1)).step_by(batch) {
-        let unknowns = first..(first + batch).min(n);
-        if first > 0 {
-            observer(Event::Ended(Stage::Assemble));
-        }
-        observer(Event::Begun(Stage::Stencils));
-        let stencils = making.stencils_around(unknowns.clone())?;
-        // Nodes whose values are known come along.
-        observer(Event::Nodes { done: n_nodes - (n - unknowns.end), of: n_nodes });
-        observer(Event::Ended(Stage::Stencils));
-        observer(Event::Begun(Stage::Assemble));
-        let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
-        firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut made)?);
-        making.room = Some(stencils);
-    }
-    making.room = None;
-    let system = made.system();
-    // Nodes that enter no equation have stars too.
-    let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| making.sizes[node] == 0).map(NodeId::of).collect();
-    for nodes in rest.chunks(batch) {
-        making.stencils(nodes.to_vec())?;
-    }
-    let soft_unknowns = (0..n).filter(|&k| firmness[k].is_soft());
-    let mut soft: Vec<NodeId> = soft_unknowns.map(|k| frame.roles.node(k)).collect();
-    let mut anew = BTreeMap::new();
-    for _ in 0..ROUNDS {
-        if soft.is_empty() {
-            break;
-        }
-        let enlarged = soft.iter().map(|&node| (node, half_as_many_again(making.sizes[node.index()])));
-        making.larger.extend(enlarged.collect::<Vec<_>>());
-        let touched = touched(frame, &soft);
-        for unknowns in touched.chunks(batch) {
-            for (k, equation) in making.equations(unknowns)? {
-                firmness[k].own = equation.row.of_unknown(k);
-                anew.insert(k, equation);
-            }
-        }
-        soft = touched.into_iter().filter(|&k| firmness[k].is_soft()).map(|k| frame.roles.node(k)).collect();
-    }
-    let of_holes = nodes_of_equations(frame.mesh, frame.node_tris, frame.roles, Formulation::Variational);
-    let stencils = making.stencils(of_holes)?;
-    let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
-    let equations = hole_equations(frame.mesh, &weak, frame.node_tris, frame.roles, Formulation::Variational);
-    let mut report = StarReport { size: stars.size, choice: stars.choice, ..StarReport::default() };
-    making.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), stars.order));
-    let used_stars = UsedStars::new(stars, 0, making.larger, BTreeMap::new());
-    Ok(Batched { system, anew, firmness, equations, stars: report, used_stars })
+    Making::new(frame, around, stars, rule).assemble((HELD / a_star).max(LEAST), observer)
 }
 
 /// What batches are made from, and what was met so far.
@@ -144,7 +71,80 @@ struct Making<'a> {
     room: Option<Stencils>, // of the batch before
 }
 
-impl Making<'_> {
+impl<'a> Making<'a> {
+    fn new(
+        frame: Frame<'a>,
+        around: (&'a Surroundings<'a>, &'a Nearest<'a>),
+        params: StarParams,
+        rule: &'a Rule,
+    ) -> Self {
+        let n_nodes = frame.mesh.cloud().n_nodes();
+        let (sizes, outcomes, is_met) = (vec![0; n_nodes], vec![Outcome::default(); n_nodes], vec![false; n_nodes]);
+        Self { frame, around, params, rule, larger: BTreeMap::new(), sizes, outcomes, is_met, room: None }
+    }
+
+    /// [`assemble`] with `batch` equations at a time.
+    fn assemble(mut self, batch: usize, observer: &mut dyn FnMut(Event)) -> Result<Batched, MfdmError> {
+        let Self { frame, params, rule, .. } = self;
+        let n_nodes = frame.mesh.cloud().n_nodes();
+        let n = frame.roles.n_unknowns;
+        let (mut made, mut firmness) = (SystemMaker::new(frame.roles), Vec::with_capacity(n));
+        for first in (0..n.max(1)).step_by(batch) {
+            let unknowns = first..(first + batch).min(n);
+            if first > 0 {
+                observer(Event::Ended(Stage::Assemble));
+            }
+            observer(Event::Begun(Stage::Stencils));
+            let stencils = self.stencils_around(unknowns.clone())?;
+            // Nodes whose values are known come along.
+            observer(Event::Nodes { done: n_nodes - (n - unknowns.end), of: n_nodes });
+            observer(Event::Ended(Stage::Stencils));
+            observer(Event::Begun(Stage::Assemble));
+            let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
+            firmness.extend(variational::append(&frame.with(&stencils), &weak, unknowns, &mut made)?);
+            self.room = Some(stencils);
+        }
+        self.room = None;
+        let system = made.system();
+        // Nodes that enter no equation have stars too.
+        let rest: Vec<NodeId> = (0..n_nodes).filter(|&node| self.sizes[node] == 0).map(NodeId::of).collect();
+        for nodes in rest.chunks(batch) {
+            self.stencils(nodes.to_vec())?;
+        }
+        let anew = self.mend(batch, &mut firmness)?;
+        let of_holes = nodes_of_equations(&frame, Formulation::Variational);
+        let stencils = self.stencils(of_holes)?;
+        let weak = WeakForm::blended(&stencils, frame.fluxes, rule);
+        let equations = hole_equations(&frame, &weak, Formulation::Variational);
+        let mut report = StarReport { size: params.size, choice: params.choice, ..StarReport::default() };
+        self.outcomes.iter().for_each(|outcome| report.add(&StarOutcome::from(*outcome), params.order));
+        let used_stars = UsedStars::new(params, 0, self.larger, BTreeMap::new());
+        Ok(Batched { system, anew, firmness, equations, stars: report, used_stars })
+    }
+
+    /// The equations of nodes that are soft and of those around, made anew with larger stars, by number; `firmness` of them too.
+    fn mend(&mut self, batch: usize, firmness: &mut [Firmness]) -> Result<BTreeMap<usize, Equation>, MfdmError> {
+        let soft_unknowns = (0..firmness.len()).filter(|&k| firmness[k].is_soft());
+        let mut soft: Vec<NodeId> = soft_unknowns.map(|k| self.frame.roles.node(k)).collect();
+        let mut anew = BTreeMap::new();
+        for _ in 0..ROUNDS {
+            if soft.is_empty() {
+                break;
+            }
+            let enlarged = soft.iter().map(|&node| (node, half_as_many_again(self.sizes[node.index()])));
+            self.larger.extend(enlarged.collect::<Vec<_>>());
+            let touched = touched(self.frame, &soft);
+            for unknowns in touched.chunks(batch) {
+                for (k, equation) in self.equations(unknowns)? {
+                    firmness[k].own = equation.row.of_unknown(k);
+                    anew.insert(k, equation);
+                }
+            }
+            soft = touched.into_iter().filter(|&k| firmness[k].is_soft()).map(|k| self.frame.roles.node(k)).collect();
+        }
+        Ok(anew)
+    }
+
     /// The equations of unknowns, ascending, each with its number.
     fn equations(&mut self, unknowns: &[usize]) -> Result<Vec<(usize, Equation)>, MfdmError> {
         let stencils = self.stencils_around(unknowns.iter().copied())?;
@@ -216,9 +216,10 @@ mod tests {
             let larger = mend(frame, around, &rule, &mut stencils, &mut system, 0..roles.n_unknowns).expect("a system");
             assert!(order > 2 || !larger.is_empty(), "some star of order 2 is mended");
             let weak = WeakForm::blended(&stencils, &fluxes, &rule);
-            let holes = hole_equations(&mesh, &weak, &node_tris, &roles, Formulation::Variational);
+            let holes = hole_equations(&frame, &weak, Formulation::Variational);
             for batch in [37, 10_000] {
-                let mut found = assemble_by(batch, frame, around, stars, &rule, &mut |_| {}).expect("a system");
+                let mut found =
+                    Making::new(frame, around, stars, &rule).assemble(batch, &mut |_| {}).expect("a system");
                 found.system.mend(found.anew, Vec::new());
                 assert_eq!(found.stars, stencils.report(), "order {order}, {batch} at a time");
                 assert_eq!(found.used_stars, UsedStars::new(stars, 0, larger.clone(), BTreeMap::new()));

@@ -335,13 +335,13 @@ pub fn barycentric_gradients([a, b, c]: [Point; 3]) -> [[f64; 2]; 3] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use nmt_cloud::{CloudParams, Section, generate};
     use nmt_curve::Outline;
 
-    #[test]
-    fn slopes_are_those_of_the_blend() -> Result<(), Box<dyn std::error::Error>> {
+    /// Polynomials of every order through the same values, on an irregular cloud.
+    pub(crate) fn fields_of_all_orders() -> Result<(Mesh, Vec<NodalPolynomials>), Box<dyn std::error::Error>> {
         let square = Section::solid(Outline::rectangle([0.0, 0.0], [2.0, 1.0]));
         let params = CloudParams { nodes: [13, 9], irregularity: 0.3, ..CloudParams::default() };
         let mesh = Mesh::constrained(generate(&square, &params)?)?;
@@ -352,6 +352,12 @@ mod tests {
         for (order, size) in [(1, 6), (2, 9), (3, 20), (4, 30)] {
             fields.push(NodalPolynomials::fit(&surroundings, &nearest, StarParams::nearest(order, size), &values)?);
         }
+        Ok((mesh, fields))
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_blend() -> Result<(), Box<dyn std::error::Error>> {
+        let (mesh, fields) = fields_of_all_orders()?;
         for field in &fields {
             for t in mesh.triangles() {
                 let [a, b, c] = mesh.corners(t);

@@ -114,9 +114,7 @@ pub(crate) fn nodal_solution(
                 let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
                 operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
             }
-            None if is_mended(params) => assemble_in_batches(frame, around, params, &rule, observer),
-            None if is_collocated(params) => collocate_in_batches(frame, around, params, &rule, observer),
-            None => assemble_at_once(frame, around, params, &rule, observer),
+            None => Assembly { frame, around, params, rule: &rule }.assemble(observer),
         }
     });
     let Assembled { system, equations, stars, used_stars, smoothing, holds } = assembled?;
@@ -181,92 +179,98 @@ impl Assembled {
     }
 }
 
-/// The equations of hats on blends, from stars that are made and dropped batch by batch; soft nodes are mended, loose ones held.
-fn assemble_in_batches(
-    frame: Frame,
-    around: Around,
-    params: &SolveParams,
-    rule: &Rule,
-    observer: &mut dyn FnMut(Event),
-) -> Result<Assembled, MfdmError> {
-    let stars = params.star_params(frame.mesh.cloud(), &around.surroundings.metric())?;
-    let places = (around.surroundings, around.nearest);
-    let batched = batches::assemble(frame, places, stars, rule, observer)?;
-    let Batched { mut system, anew, firmness, equations, stars, used_stars } = batched;
-    let holds = steady(frame, places, params.order, &mut system, anew, &firmness);
-    Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
+/// A problem with what its equations are made from.
+struct Assembly<'a> {
+    frame: Frame<'a>,
+    around: Around<'a>,
+    params: &'a SolveParams,
+    rule: &'a Rule,
 }
 
-/// The local equations with interpolating polynomials, from stars that are made and dropped batch by batch.
-fn collocate_in_batches(
-    frame: Frame,
-    around: Around,
-    params: &SolveParams,
-    rule: &Rule,
-    observer: &mut dyn FnMut(Event),
-) -> Result<Assembled, MfdmError> {
-    let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
-    let places = (around.surroundings, around.nearest);
-    let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
-    let known = |node: NodeId| known_slopes(fluxes, around.surroundings, node);
-    let local::Batched { system, stars: report, used_stars } =
-        local::assemble_in_batches(frame, places, stars, known, observer)?;
-    // The holes' equations are weak ones, with stencils of their own.
-    let of_holes = nodes_of_equations(mesh, node_tris, roles, Formulation::Local);
-    let stencils = Stencils::of_some(places, stars, of_holes, known);
-    let weak = WeakForm::blended(&stencils, fluxes, rule);
-    let equations = hole_equations(mesh, &weak, node_tris, roles, Formulation::Local);
-    Ok(Assembled { system, equations, stars: report, used_stars, smoothing: None, holds: Vec::new() })
+impl Assembly<'_> {
+    fn assemble(&self, observer: &mut dyn FnMut(Event)) -> Result<Assembled, MfdmError> {
+        if is_mended(self.params) {
+            self.mended_in_batches(observer)
+        } else if is_collocated(self.params) {
+            self.collocated_in_batches(observer)
+        } else {
+            self.at_once(observer)
+        }
+    }
+
+    fn star_params(&self) -> Result<StarParams, MfdmError> {
+        self.params.star_params(self.frame.mesh.cloud(), &self.around.surroundings.metric())
+    }
+
+    fn places(&self) -> (&Surroundings<'_>, &Nearest<'_>) {
+        (self.around.surroundings, self.around.nearest)
+    }
+
+    /// Those of hats on blends, from stars that are made and dropped batch by batch; soft nodes are mended, loose ones held.
+    fn mended_in_batches(&self, observer: &mut dyn FnMut(Event)) -> Result<Assembled, MfdmError> {
+        let batched = batches::assemble(self.frame, self.places(), self.star_params()?, self.rule, observer)?;
+        let Batched { mut system, anew, firmness, equations, stars, used_stars } = batched;
+        let holds = steady(self.frame, self.places(), self.params.order, &mut system, anew, &firmness);
+        Ok(Assembled { system, equations, stars, used_stars, smoothing: None, holds })
+    }
+
+    /// The local ones with interpolating polynomials, from stars that are made and dropped batch by batch.
+    fn collocated_in_batches(&self, observer: &mut dyn FnMut(Event)) -> Result<Assembled, MfdmError> {
+        let (fluxes, stars) = (self.frame.fluxes, self.star_params()?);
+        let known = |node: NodeId| known_slopes(fluxes, self.around.surroundings, node);
+        let batched = local::assemble_in_batches(self.frame, self.places(), stars, known, observer)?;
+        let local::Batched { system, stars: report, used_stars } = batched;
+        // The holes' equations are weak ones, with stencils of their own.
+        let of_holes = nodes_of_equations(&self.frame, Formulation::Local);
+        let stencils = Stencils::of_some(self.places(), stars, of_holes, known);
+        let weak = WeakForm::blended(&stencils, fluxes, self.rule);
+        let equations = hole_equations(&self.frame, &weak, Formulation::Local);
+        Ok(Assembled { system, equations, stars: report, used_stars, smoothing: None, holds: Vec::new() })
+    }
+
+    /// All others, from all stencils.
+    fn at_once(&self, observer: &mut dyn FnMut(Event)) -> Result<Assembled, MfdmError> {
+        let Self { frame, around, params, rule } = *self;
+        let Frame { mesh, fluxes, .. } = frame;
+        observer(Event::Begun(Stage::Stencils));
+        let stencils = stencils_of_equations(around, fluxes, params, observer)?;
+        observer(Event::Ended(Stage::Stencils));
+        observer(Event::Begun(Stage::Assemble));
+        let (stars, used_stars) = (stencils.report(), stencils.used());
+        let setting = frame.with(&stencils);
+        let space = TrialSpace {
+            kind: params.trial,
+            mesh,
+            stencils: &stencils,
+            surroundings: around.surroundings,
+            nearest: around.nearest,
+            params: StarParams {
+                order: params.order,
+                size: stars.size,
+                choice: params.star_choice(mesh.cloud()),
+                smoothing: params.smoothing,
+            },
+        };
+        let weak = match params.formulation {
+            Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
+            Formulation::Local | Formulation::Fem => WeakForm::blended(&stencils, fluxes, rule),
+        };
+        let system = match (params.formulation, params.test) {
+            (Formulation::Local, _) => local::assemble(&setting)?,
+            (Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
+            (Formulation::Variational, Test::Hat) | (Formulation::Fem, _) => variational::assemble(&setting, &weak)?,
+        };
+        let equations = hole_equations(&frame, &weak, params.formulation);
+        drop(weak);
+        // Rows are the larger part of what is held; only smoothing needs them again.
+        let stencils = (!interpolates(params)).then_some(stencils);
+        Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds: Vec::new() })
+    }
 }
 
 /// What a flux at a node makes known of the gradient there, in stretched coordinates.
 fn known_slopes(fluxes: &Fluxes, surroundings: &Surroundings, node: NodeId) -> Option<KnownSlopes> {
     fluxes.of_node(node).map(|flux| flux.known(surroundings.metric().stretch()))
-}
-
-/// All other equations, from all stencils.
-fn assemble_at_once(
-    frame: Frame,
-    around: Around,
-    params: &SolveParams,
-    rule: &Rule,
-    observer: &mut dyn FnMut(Event),
-) -> Result<Assembled, MfdmError> {
-    let Frame { mesh, node_tris, roles, fluxes, .. } = frame;
-    let Around { surroundings, nearest, .. } = around;
-    observer(Event::Begun(Stage::Stencils));
-    let stencils = stencils_of_equations(around, fluxes, params, observer)?;
-    observer(Event::Ended(Stage::Stencils));
-    observer(Event::Begun(Stage::Assemble));
-    let (stars, used_stars) = (stencils.report(), stencils.used());
-    let setting = frame.with(&stencils);
-    let space = TrialSpace {
-        kind: params.trial,
-        mesh,
-        stencils: &stencils,
-        surroundings,
-        nearest,
-        params: StarParams {
-            order: params.order,
-            size: stars.size,
-            choice: params.star_choice(mesh.cloud()),
-            smoothing: params.smoothing,
-        },
-    };
-    let weak = match params.formulation {
-        Formulation::Variational => WeakForm::new(space, fluxes, rule)?,
-        Formulation::Local | Formulation::Fem => WeakForm::blended(&stencils, fluxes, rule),
-    };
-    let system = match (params.formulation, params.test) {
-        (Formulation::Local, _) => local::assemble(&setting)?,
-        (Formulation::Variational, Test::Trial) => galerkin::assemble(&setting, space, rule)?,
-        (Formulation::Variational, Test::Hat) | (Formulation::Fem, _) => variational::assemble(&setting, &weak)?,
-    };
-    let equations = hole_equations(mesh, &weak, node_tris, roles, params.formulation);
-    drop(weak);
-    // Rows are the larger part of what is held; only smoothing needs them again.
-    let stencils = (!interpolates(params)).then_some(stencils);
-    Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds: Vec::new() })
 }
 
 /// The star of `node` as the equations of a problem have it in the end, mended where it left its node soft; `None` for
@@ -293,9 +297,9 @@ pub(crate) fn star_of_equations(
             let (rule, source_rule) = (params.rule()?, source_rule(params));
             let frame =
                 Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-            let assembled = assemble_in_batches(frame, around, params, &rule, &mut |_| {})?;
-            let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
-            let mut own = Stencils::of_some((around.surroundings, around.nearest), stars, vec![node], |_| None);
+            let assembly = Assembly { frame, around, params, rule: &rule };
+            let assembled = assembly.mended_in_batches(&mut |_| {})?;
+            let mut own = Stencils::of_some(assembly.places(), assembly.star_params()?, vec![node], |_| None);
             let larger = assembled.used_stars.larger().get(&node).map(|size| (node, *size));
             own.replace(around.surroundings, around.nearest, larger.as_slice());
             own

@@ -1,8 +1,9 @@
 //! The weak equation of the constant on each hole: ∮ ∂F/∂n ds = 2GθA in the form ∫∇F·∇v = 2Gθ(∫v + A) \[D12\].
 
+use crate::assembly::Frame;
 use crate::element::Element;
 use crate::problem::Formulation;
-use crate::system::{Equation, Roles, RowSum};
+use crate::system::{Equation, RowSum};
 use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::{LoopId, NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
@@ -17,13 +18,8 @@ const LOCAL_LAYERS: usize = 2;
 ///
 /// v is linear on each triangle, 1 at the hole's nodes and 0 on every other boundary; in the local formulation it is 1 at
 /// all nodes within two element layers of the hole too, in the variational one 0 at all other nodes.
-pub(crate) fn hole_equations(
-    mesh: &Mesh,
-    weak: &WeakForm,
-    node_tris: &NodeTris,
-    roles: &Roles,
-    formulation: Formulation,
-) -> Vec<Equation> {
+pub(crate) fn hole_equations(frame: &Frame, weak: &WeakForm, formulation: Formulation) -> Vec<Equation> {
+    let Frame { mesh, node_tris, roles, .. } = *frame;
     let (mut sum, mut gathered) = (RowSum::new(mesh.cloud().n_nodes()), Gathered::default());
     let equation = |ring: Ring| {
         for &t in ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]) {
@@ -42,12 +38,8 @@ pub(crate) fn hole_equations(
 }
 
 /// The nodes whose polynomials enter the equations of the holes, ascending.
-pub(crate) fn nodes_of_equations(
-    mesh: &Mesh,
-    node_tris: &NodeTris,
-    roles: &Roles,
-    formulation: Formulation,
-) -> Vec<NodeId> {
+pub(crate) fn nodes_of_equations(frame: &Frame, formulation: Formulation) -> Vec<NodeId> {
+    let Frame { mesh, node_tris, roles, .. } = *frame;
     let mut nodes = Vec::new();
     for hole in 0..roles.n_holes {
         let ring = Ring::new(mesh, node_tris, hole, formulation);

@@ -134,24 +134,12 @@ fn monomials<const ORDER: usize>([h, k]: [Lanes; 2]) -> [Lanes; MAX_MONOMIALS] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blend::tests::fields_of_all_orders;
     use crate::gauss::{seven_points, six_points};
-    use crate::stencils::StarParams;
-    use crate::surroundings::Surroundings;
-    use nmt_cloud::{CloudParams, Section, generate};
-    use nmt_curve::Outline;
 
     #[test]
     fn four_points_at_a_time_are_as_one_by_one() -> Result<(), Box<dyn std::error::Error>> {
-        let square = Section::solid(Outline::rectangle([0.0, 0.0], [2.0, 1.0]));
-        let params = CloudParams { nodes: [13, 9], irregularity: 0.3, ..CloudParams::default() };
-        let mesh = Mesh::constrained(generate(&square, &params)?)?;
-        let values: Vec<f64> = mesh.xy().iter().map(|p| (2.0 * p[0]).sin() * (1.0 + p[1]).exp()).collect();
-        let surroundings = Surroundings::new(mesh.cloud());
-        let nearest = surroundings.nearest();
-        let mut fields = vec![NodalPolynomials::linear(&mesh, &values)];
-        for (order, size) in [(1, 6), (2, 9), (3, 20), (4, 30)] {
-            fields.push(NodalPolynomials::fit(&surroundings, &nearest, StarParams::nearest(order, size), &values)?);
-        }
+        let (mesh, fields) = fields_of_all_orders()?;
         for (field, rule) in fields.iter().flat_map(|field| [(field, six_points()), (field, seven_points())]) {
             let lanes = RuleLanes::from(&rule);
             assert!((lanes.weights.iter().flat_map(|w| w.0).sum::<f64>() - 1.0).abs() < 1e-15);

@@ -23,6 +23,15 @@ pub(crate) struct Limits {
     pub iterations: usize,
 }
 
+/// What is iterated, and to where.
+pub(crate) struct Task<'a, const K: usize> {
+    pub a: &'a Csr,
+    pub b: [RightSide<'a>; K],
+    pub limits: Limits,
+    /// Takes iterations and the largest residual after each.
+    pub told: &'a mut dyn FnMut(usize, f64),
+}
+
 /// What came of an iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Iterated {
@@ -104,10 +113,7 @@ impl<const K: usize> Progress<'_, K> {
 /// `recur` takes x, r = b − Ax and the progress; it returns when no right side runs any more. What it holds is given back
 /// before the solutions are parted.
 fn iterate<const K: usize>(
-    a: &Csr,
-    b: [RightSide; K],
-    limits: Limits,
-    told: &mut dyn FnMut(usize, f64),
+    Task { a, b, limits, told }: Task<K>,
     mut recur: impl FnMut(&mut [Sides<K>], &mut [Sides<K>], &mut Progress<K>),
 ) -> [Iterated; K] {
     let (mut x, mut r) = (vec![[0.0; K]; a.n_rows()], vec![[0.0; K]; a.n_rows()]);
@@ -144,15 +150,12 @@ fn iterate<const K: usize>(
 ///
 /// `precondition` takes r and makes z = M⁻¹r and A·z.
 pub(crate) fn cg<const K: usize>(
-    a: &Csr,
-    b: [RightSide; K],
-    limits: Limits,
+    task: Task<K>,
     mut precondition: impl FnMut(&[Sides<K>], &mut [Sides<K>], &mut [Sides<K>]),
-    told: &mut dyn FnMut(usize, f64),
 ) -> [Iterated; K] {
-    let room = || vec![[0.0; K]; a.n_rows()];
+    let room = || vec![[0.0; K]; task.a.n_rows()];
     let (mut z, mut az, mut p, mut ap) = (room(), room(), room(), room());
-    iterate(a, b, limits, told, move |x, r, progress| {
+    iterate(task, move |x, r, progress| {
         let mut rho = [0.0; K];
         while progress.runs.contains(&true) {
             precondition(r, &mut z, &mut az);
@@ -175,16 +178,13 @@ pub(crate) fn cg<const K: usize>(
 ///
 /// `precondition` takes r and makes z = M⁻¹r and A·z.
 pub(crate) fn bicgstab<const K: usize>(
-    a: &Csr,
-    b: [RightSide; K],
-    limits: Limits,
+    task: Task<K>,
     mut precondition: impl FnMut(&[Sides<K>], &mut [Sides<K>], &mut [Sides<K>]),
-    told: &mut dyn FnMut(usize, f64),
 ) -> [Iterated; K] {
-    let room = || vec![[0.0; K]; a.n_rows()];
+    let room = || vec![[0.0; K]; task.a.n_rows()];
     let (mut p, mut v, mut t, mut y) = (room(), room(), room(), room());
-    let mut starts = 0;
-    iterate(a, b, limits, told, move |x, r, progress| {
+    let (b, mut starts) = (task.b, 0);
+    iterate(task, move |x, r, progress| {
         starts += 1;
         // The first residual: b itself at the first start, which is mostly the only one.
         let again = if starts > 1 { Some(r.to_vec()) } else { None };
@@ -245,17 +245,19 @@ mod tests {
         }
     }
 
+    /// By conjugate gradients or BiCGSTAB, with one number of the diagonal for all.
+    fn solved<const K: usize>(a: &Csr, b: [RightSide; K], diagonal: f64, by_cg: bool) -> [Iterated; K] {
+        let task = Task { a, b, limits: LIMITS, told: &mut |_, _| {} };
+        if by_cg { cg(task, jacobi(a, diagonal)) } else { bicgstab(task, jacobi(a, diagonal)) }
+    }
+
     #[test]
     fn both_find_the_solution_they_were_made_for() {
         let exact: Vec<f64> = (0..50).map(|i| f64::from(i % 7) - 2.0).collect();
         let (symmetric, other) = (tridiagonal(50, -1.0, -1.0), tridiagonal(50, -1.4, -0.8));
         for (a, is_symmetric) in [(&symmetric, true), (&symmetric, false), (&other, false)] {
             let b = a.apply(&exact);
-            let [done] = if is_symmetric {
-                cg(a, [RightSide::All(&b)], LIMITS, jacobi(a, 2.5), &mut |_, _| {})
-            } else {
-                bicgstab(a, [RightSide::All(&b)], LIMITS, jacobi(a, 2.5), &mut |_, _| {})
-            };
+            let [done] = solved(a, [RightSide::All(&b)], 2.5, is_symmetric);
             assert!(done.residual <= 1e-12 && done.iterations < 60, "{done:?}");
             assert!(done.x.iter().zip(&exact).all(|(x, e)| (x - e).abs() < 1e-10));
         }
@@ -271,12 +273,12 @@ mod tests {
         let [hard, easy, zero] = [&hard, &easy, &zero].map(|b| RightSide::All(b));
         let column = RightSide::Column(&[(7, -1.0), (30, 0.5)]);
         for pair in [[hard, easy], [easy, hard], [zero, hard], [hard, column]] {
-            let together = bicgstab(&other, pair, LIMITS, jacobi(&other, 2.5), &mut |_, _| {});
-            let alone = pair.map(|b| bicgstab(&other, [b], LIMITS, jacobi(&other, 2.5), &mut |_, _| {}));
+            let together = solved(&other, pair, 2.5, false);
+            let alone = pair.map(|b| solved(&other, [b], 2.5, false));
             assert_eq!(together, alone.map(|[one]| one));
             assert!(together.iter().all(|one| one.residual <= LIMITS.target));
-            let together = cg(&symmetric, pair, LIMITS, jacobi(&symmetric, 2.5), &mut |_, _| {});
-            let alone = pair.map(|b| cg(&symmetric, [b], LIMITS, jacobi(&symmetric, 2.5), &mut |_, _| {}));
+            let together = solved(&symmetric, pair, 2.5, true);
+            let alone = pair.map(|b| solved(&symmetric, [b], 2.5, true));
             assert_eq!(together, alone.map(|[one]| one));
         }
     }
@@ -291,11 +293,7 @@ mod tests {
         let a = of_dense(&rows);
         let b = vec![1.0; 20];
         for is_cg in [true, false] {
-            let [done] = if is_cg {
-                cg(&a, [RightSide::All(&b)], LIMITS, jacobi(&a, 1.0), &mut |_, _| {})
-            } else {
-                bicgstab(&a, [RightSide::All(&b)], LIMITS, jacobi(&a, 1.0), &mut |_, _| {})
-            };
+            let [done] = solved(&a, [RightSide::All(&b)], 1.0, is_cg);
             assert!(done.residual > 0.1 && done.iterations <= 100, "{done:?}");
             let left: f64 = a.apply(&done.x).iter().zip(&b).map(|(ax, b)| (b - ax) * (b - ax)).sum::<f64>();
             assert!((done.residual - (left / 20.0).sqrt()).abs() < 1e-12);
@@ -307,7 +305,7 @@ mod tests {
         let mut rows = vec![vec![0.0; 3]; 3];
         (0..3).for_each(|i| rows[i][i] = if i == 1 { f64::NAN } else { 1.0 });
         let a = of_dense(&rows);
-        let [done] = bicgstab(&a, [RightSide::All(&[1.0; 3])], LIMITS, jacobi(&a, 1.0), &mut |_, _| {});
+        let [done] = solved(&a, [RightSide::All(&[1.0; 3])], 1.0, false);
         assert!(done.residual.is_nan() && done.iterations < 5, "{done:?}");
     }
 }
