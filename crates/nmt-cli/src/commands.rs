@@ -22,7 +22,7 @@ use crate::progress::Progress;
 use crate::timing::Stopwatch;
 use nmt::pipeline::{Event, Step};
 use nmt::problem::{Overrides, Problem, Source};
-use nmt::report::{Report, text};
+use nmt::report::{Report, significant, text};
 use std::path::Path;
 
 /// The directory for results, where one is asked for.
@@ -43,7 +43,8 @@ fn observer<'a>(
         progress.observe(name.map(|subdomain| subdomain.name.as_str()), event);
         if let Event::Step(Step { nodes, j, error }) = event {
             let of = name.map_or(String::new(), |subdomain| format!("\"{}\": ", subdomain.name));
-            progress.note(&format!("{of}{nodes} nodes, J = {j:.9}, estimated error {error:.1e}"));
+            let j = significant(j, 10);
+            progress.note(&format!("{of}{nodes} nodes, J = {j}, estimated error {error:.1e}"));
         }
     }
 }

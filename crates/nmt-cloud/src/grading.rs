@@ -8,8 +8,13 @@ use std::sync::Arc;
 /// By how much the spacing may grow on a unit of length, where nothing else is said.
 pub const DEFAULT_GROWTH: f64 = 0.3;
 
-/// The most it may grow: up to here neighbouring nodes are of the same level of the lattice or of the next but one.
+/// The most that may be asked for.
 pub const MAX_GROWTH: f64 = 0.5;
+
+/// The most it grows, though more be asked for: up to here the nearest-node distances of neighbours differ by 2 at most.
+///
+/// Measured at points of refinement in rectangles: none of 46 000 pairs beyond it at 0.3, 1 of 41 000 at 0.35, 1 in 750 at 0.45.
+pub(crate) const STEEPEST: f64 = 1.0 / 3.0;
 
 /// The least spacing, as a fraction of the size of the section.
 ///
@@ -61,14 +66,14 @@ pub struct Refinement {
     pub target: Target,
     /// The spacing there, user's length unit.
     pub size: f64,
-    /// By how much it grows on a unit of length, in (0, 0.5].
+    /// By how much it grows on a unit of length, in (0, 0.5]; more than ⅓ counts as ⅓.
     pub growth: f64,
 }
 
 /// How the spacing of a cloud varies: the least of a function, of refinements, and of the uniform spacing.
 ///
 /// Wherever the function rises faster than `growth`, the spacing rises by that from the places where the function is small;
-/// |∇h| ≤ growth everywhere. An edge that is shorter than the nodes it must have want it, or that has a count of its own,
+/// |∇h| ≤ growth everywhere, and at most ⅓: neighbouring nodes would be too unlike beyond. An edge that is shorter than the nodes it must have want it, or that has a count of its own,
 /// counts as a refinement of its own.
 ///
 /// ```

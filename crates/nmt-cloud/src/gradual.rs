@@ -203,7 +203,7 @@ impl Search<'_> {
         let half = self.lattice.spacing().map(|s| s * 0.5f64.powi(cell.depth + 1));
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
         values.iter().flatten().for_each(|&value| (least, most) = (least.min(value), most.max(value)));
-        self.least = self.least.min(least);
+        let is_varied = most > MUCH * least;
         let length = |[a, b]: [(usize, usize); 2]| {
             let along = |d: usize, n: usize| half[d] * n as f64;
             along(0, a.1.abs_diff(b.1)).hypot(along(1, a.0.abs_diff(b.0)))
@@ -214,6 +214,15 @@ impl Search<'_> {
         };
         let is_fine = 2.0 * half[0].max(half[1]) <= least;
         let mut steep = NEIGHBOURS.iter().filter(is_steep).peekable();
+        // What a formula is beyond the section may be as small as it likes.
+        let matters = steep.peek().is_some() || is_varied || least < self.least;
+        if matters {
+            let centre = place(self.lattice, cell, 1, 1);
+            if self.function.is_outside(centre, half[0].hypot(half[1])) {
+                return Ok(());
+            }
+        }
+        self.least = self.least.min(least);
         if steep.peek().is_some() && is_fine {
             for &[a, b] in steep {
                 let (row, column) = if value(a) < value(b) { a } else { b };
@@ -223,7 +232,7 @@ impl Search<'_> {
             if self.found.len() > MOST_SOURCES {
                 return Err(CloudError::TooFine { spacing: self.least, limit: MAX_GRID_POINTS, place: "" });
             }
-        } else if !is_fine && (steep.peek().is_some() || most > MUCH * least) {
+        } else if !is_fine && (steep.peek().is_some() || is_varied) {
             for (k, child) in cell.children().into_iter().enumerate() {
                 self.visit(child, Some(corners_of_child(&values, k)))?;
             }

@@ -1,7 +1,7 @@
 //! The spacing of a graded cloud at every place: a function, limited in its growth, and what grows from points and edges.
 
 use crate::error::CloudError;
-use crate::grading::{Grading, MIN_SPACING_REL, Refinement, SpacingFunction, Target};
+use crate::grading::{Grading, MIN_SPACING_REL, Refinement, STEEPEST, SpacingFunction, Target};
 use crate::gradual::{FirstLook, steep_places};
 use crate::nested::NestedLattice;
 use crate::section::{CloudParams, GivenNode, Section};
@@ -34,6 +34,7 @@ pub struct Spacing {
 pub(crate) struct Asked {
     function: SpacingFunction,
     section: Locator,
+    chord: f64, // by which the section may differ from that
     most: f64,
     least: f64,
 }
@@ -52,6 +53,11 @@ impl Asked {
             Location::Outside => Ok(self.most),
             Location::Inside | Location::OnBoundary => Err(CloudError::NotASpacing { at: p, value }),
         }
+    }
+
+    /// Whether what the function is within `radius` of `p` concerns nobody: the section is not there.
+    pub fn is_outside(&self, p: Point, radius: f64) -> bool {
+        self.section.misses_disc(p, radius + self.chord)
     }
 }
 
@@ -93,19 +99,21 @@ impl Spacing {
             found.extend(of_short_edges(section, params, grading.growth)?);
         }
         found.retain(|source| source.size < most);
-        found.iter_mut().for_each(|source| source.size = source.size.max(least));
+        for source in &mut found {
+            (source.size, source.growth) = (source.size.max(least), source.growth.min(STEEPEST));
+        }
         let function = grading.function.clone().map(|function| {
             let sides = section.loops().map(|outline| outline.flatten(SECTION_CHORD_REL * size));
             let sides = sides.flat_map(|ring| {
                 (0..ring.len()).map(move |k| [ring[k], ring[(k + 1) % ring.len()]]).collect::<Vec<_>>()
             });
-            Asked { function, section: Locator::new(sides), most, least }
+            Asked { function, section: Locator::new(sides), chord: SECTION_CHORD_REL * size, most, least }
         });
         let mut finest = most;
         let looked_at = |function| FirstLook::new(&function, &lattice).map(|look| (function, look));
         let function = function.map(looked_at).transpose()?;
         if let Some((function, look)) = &function {
-            let steep = steep_places(function, look, &lattice, grading.growth)?;
+            let steep = steep_places(function, look, &lattice, grading.growth.min(STEEPEST))?;
             found.extend(steep.sources);
             finest = steep.least;
         }

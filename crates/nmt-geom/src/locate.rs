@@ -42,6 +42,11 @@ impl Locator {
     pub fn locate(&self, p: Point) -> Location {
         self.index.locate(p)
     }
+
+    /// Whether no point of the region is nearer to `p` than `radius`.
+    pub fn misses_disc(&self, p: Point, radius: f64) -> bool {
+        !self.index.any_within(p, radius) && self.locate(p) == Location::Outside
+    }
 }
 
 /// How the ray from a point towards +x meets a segment.
@@ -111,6 +116,16 @@ mod tests {
         assert_eq!(locator.locate([-2.0, 0.0]), Location::Outside);
         assert_eq!(locator.locate([-0.5, 1.0]), Location::Outside);
         assert_eq!(locator.locate([1.0, 0.0]), Location::OnBoundary);
+    }
+
+    #[test]
+    fn a_disc_is_missed_where_neither_sides_nor_material_come_near() {
+        let (outer, hole) =
+            ([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]], [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]]);
+        let locator = locator(&[&outer, &hole]);
+        assert!(locator.misses_disc([5.0, 2.0], 0.9) && !locator.misses_disc([5.0, 2.0], 1.1));
+        assert!(locator.misses_disc([2.0, 2.0], 0.9) && !locator.misses_disc([2.0, 2.0], 1.1)); // in the hole
+        assert!(!locator.misses_disc([0.5, 2.0], 0.1)); // in the material
     }
 
     proptest! {

@@ -9,6 +9,7 @@
 use crate::boundary_value::recover;
 use crate::error::MfdmError;
 use crate::gauss::six_points;
+use crate::hidden::Hidden;
 use crate::lanes::Lanes;
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
@@ -135,7 +136,7 @@ pub(crate) fn bounds(
     }
     // J = 2∫v over the polygon; ∫∇v·(∇v − σ) is what 4∫v − ∫|∇v|² lies below it.
     let low = solution.j - product;
-    let j_bounds = [low, low + square];
+    let j_bounds = [low - beyond.hidden, low + square + beyond.hidden];
     let rounding = f64::EPSILON * mesh.cloud().n_nodes() as f64;
     let j = j_bounds.iter().map(|bound| (bound - solution.j).abs()).fold(rounding * solution.j.abs(), f64::max);
     let relative = j / solution.j.abs();
@@ -241,6 +242,8 @@ struct Beyond {
     largest: f64,
     /// Largest |∇v − σ| on the edges from the node of τ_max to the next ones.
     at_maximum: f64,
+    /// What bends of edges that nobody sees may change in J: τ² times the area.
+    hidden: f64,
 }
 
 impl Beyond {
@@ -251,7 +254,7 @@ impl Beyond {
             let segments = cloud.boundary().loop_segments(LoopId::of(k + 1));
             segments.iter().for_each(|s| on_boundary[s.from.index()] = hole.f / both.solution.g_theta);
         }
-        let mut beyond = Self { product: 0.0, slivers: Vec::new(), largest: 0.0, at_maximum: 0.0 };
+        let mut beyond = Self { product: 0.0, slivers: Vec::new(), largest: 0.0, at_maximum: 0.0, hidden: 0.0 };
         visit_pieces(
             both.mesh,
             section,
@@ -280,7 +283,8 @@ impl Beyond {
             largest_difference = largest_difference.max(size(sub(slope, sigma)));
             (by_v[k], by_warping[k]) = ([s, size(slope)], [s, size(sigma)]);
         }
-        self.largest = self.largest.max(peak(&by_v)).max(peak(&by_warping));
+        let stress = peak(&by_v).max(peak(&by_warping));
+        self.largest = self.largest.max(stress);
         let mut sums = [0.0; 2];
         for Sample { at, weight, .. } in piece.sliver(triangle) {
             let (v, slope, sigma) = both.at(triangle, at);
@@ -288,6 +292,13 @@ impl Beyond {
             self.product += weight * (dot(slope, difference) - 2.0 * (v - c));
             sums[0] += weight * dot(difference, difference);
             sums[1] += 2.0 * weight * (v - c);
+        }
+        if let Some(hidden) = Hidden::of(piece) {
+            // The derivative of J, as the boundary moves outwards, is ∮τ² (Hadamard).
+            let of_area = stress * stress * hidden.area;
+            self.hidden += of_area;
+            sums[1] += of_area;
+            self.largest = self.largest.max(stress * (1.0 + hidden.concentration));
         }
         if !piece.is_straight {
             self.slivers.push((triangle, sums));

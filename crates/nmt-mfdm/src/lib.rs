@@ -37,6 +37,7 @@ pub mod exact;
 mod flux;
 mod galerkin;
 mod gauss;
+mod hidden;
 #[cfg(feature = "kernels")]
 #[doc(hidden)]
 pub mod kernels;
@@ -82,6 +83,7 @@ pub use edge_stress::{Circulation, EdgePoint, EdgeStress, circulations, edge_str
 pub use error::MfdmError;
 pub use estimate::{ErrorEstimate, estimate, estimate_observed};
 pub use gauss::{GAUSS_POINTS, Rule, six_points, three_points};
+pub use hidden::{HiddenBends, hidden_bends};
 pub use mwls::{MAX_CONDITION, Mwls};
 pub use one_star::{NodeStar, StarMember};
 pub use params::{SolveParams, default_gauss};

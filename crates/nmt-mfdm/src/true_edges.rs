@@ -51,10 +51,25 @@ pub(crate) fn visit_pieces(
     wanted: impl Fn(EdgeId) -> bool,
     mut visit: impl FnMut(&Segment, &Piece, TriId) -> Result<(), MfdmError>,
 ) -> Result<(), MfdmError> {
-    let cloud = mesh.cloud();
+    let triangles = boundary_triangles(mesh);
+    visit_edges(mesh.cloud(), section, wanted, |segment, piece| match triangles.get(&(segment.from, segment.to)) {
+        Some(triangle) => visit(segment, piece, *triangle),
+        None => Ok(()),
+    })
+}
+
+/// Visits the pieces of the edges that are `wanted`, in the order of the segments.
+///
+/// # Errors
+/// As [`visit_pieces`].
+pub(crate) fn visit_edges(
+    cloud: &Cloud,
+    section: &Section,
+    wanted: impl Fn(EdgeId) -> bool,
+    mut visit: impl FnMut(&Segment, &Piece) -> Result<(), MfdmError>,
+) -> Result<(), MfdmError> {
     let curves: Vec<&Curve> = section.loops().flat_map(|outline| outline.edges.iter().map(|e| &e.curve)).collect();
     let mut tables: HashMap<EdgeId, ArcTable> = HashMap::new();
-    let triangles = boundary_triangles(mesh);
     for segment in cloud.boundary().segments().iter().filter(|segment| wanted(segment.edge)) {
         let Some(&curve) = curves.get(segment.edge.index()) else {
             return Err(MfdmError::Conditions { found: segment.edge.index() + 1, given: curves.len() });
@@ -63,8 +78,7 @@ pub(crate) fn visit_pieces(
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(ArcTable::new(curve).map_err(|source| MfdmError::Curve { source })?),
         };
-        let Some(&triangle) = triangles.get(&(segment.from, segment.to)) else { continue };
-        visit(segment, &Piece::new(cloud, segment, curve, table), triangle)?;
+        visit(segment, &Piece::new(cloud, segment, curve, table))?;
     }
     Ok(())
 }
@@ -146,6 +160,19 @@ impl<'a> Piece<'a> {
                 Sample { triangle, at: lerp(chord, at, t), weight: weight * share * cross(out, by_s) }
             })
         })
+    }
+
+    /// Length of the whole edge.
+    pub fn edge_length(&self) -> f64 {
+        self.table.length()
+    }
+
+    /// Unit tangent at fraction `s` of its length, forwards along it even where it turns back.
+    pub fn tangent(&self, s: f64) -> Point {
+        let tangent = self.curve.direction_at(self.table.parameter_at(self.at(s)));
+        let length = tangent[0].hypot(tangent[1]).max(f64::MIN_POSITIVE);
+        let sign = if self.s[1] < self.s[0] { -1.0 } else { 1.0 };
+        tangent.map(|c| sign * c / length)
     }
 
     /// Unit vector along it at fraction `s` of its length.

@@ -27,6 +27,6 @@ pub use singular::singular_vertices;
 pub(crate) use singular::vertex_angles;
 pub use solves::SolvesReport;
 pub use stars::{StarsReport, VariationalReport};
-pub use text::{place, text};
+pub use text::{place, significant, text};
 pub use thickness::{FEWEST_ACROSS, ThinSpot, thinnest};
 pub use tolerance::{StepReport, ToleranceReport};

@@ -115,3 +115,30 @@ fn conforming_subdomains_keep_their_common_nodes() -> Result<(), NmtError> {
     }
     Ok(())
 }
+
+/// Eleven nodes across a circle with thirty ripples see ripples that are not there: a tolerance is not reached by that.
+#[test]
+fn a_tolerance_is_not_met_by_an_edge_that_nobody_sees() -> Result<(), NmtError> {
+    let shape = "outline = [[1.006, 0], { x = \"cos(t) + 0.006*cos(31*t)\", y = \"sin(t) + 0.006*sin(31*t)\", t = [0, 6.283185307179586] }]";
+    let exact = 1.571_022_585; // of the conformal map
+    for head in ["", "irregularity = 0.25"] {
+        let solved = solve(shape, head, "tolerance = 3e-4")?;
+        assert!(solved.history.len() > 1 && solved.history[0].error > 3e-4, "{:?}", solved.history);
+        assert!(Step::of(&solved).error <= 3e-4);
+        assert!((solved.solution.j / exact - 1.0).abs() <= 3e-4, "{}", solved.solution.j);
+    }
+    Ok(())
+}
+
+/// Of an irregular cloud a few triangles are much worse than all others: what a step refines there, and with it around, is bounded.
+#[test]
+fn no_step_takes_many_times_the_nodes_of_the_one_before() -> Result<(), NmtError> {
+    let shape = "outline = [[1.15, 0], { x = \"cos(t) + 0.15*cos(6*t)\", y = \"sin(t) + 0.15*sin(6*t)\", t = [0, 6.283185307179586] }]";
+    for keys in ["formulation = \"local\"", ""] {
+        let solved = solve(shape, "irregularity = 0.25", &format!("tolerance = 1e-5\n{keys}"))?;
+        let nodes: Vec<usize> = solved.history.iter().map(|step| step.nodes).collect();
+        assert!(nodes.windows(2).all(|pair| pair[1] <= 8 * pair[0]), "{nodes:?}");
+        assert!(Step::of(&solved).error <= 1e-5);
+    }
+    Ok(())
+}

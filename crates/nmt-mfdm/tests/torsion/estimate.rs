@@ -1,10 +1,10 @@
 //! Error estimates against exact results: they cover the error, and not by much.
 
 use nmt_cloud::{CloudParams, Grading, Section, generate};
-use nmt_curve::Outline;
+use nmt_curve::{Curve, Expression, Outline, OutlineEdge};
 use nmt_mfdm::{
     ErrorEstimate, Formulation, HoleCondition, Load, SolveParams, TorsionProblem, TorsionSolution, estimate, exact,
-    solve,
+    hidden_bends, solve,
 };
 use nmt_tri::Mesh;
 use std::error::Error;
@@ -177,5 +177,75 @@ fn no_bounds_where_holes_have_no_circulation() -> Result<(), Box<dyn Error>> {
     let problem = TorsionProblem { holes: HoleCondition::Zero, ..TorsionProblem::default() };
     let solution = solve(&problem, &mesh, &SolveParams::default())?;
     assert_eq!(estimate(&problem, &mesh, &tube, &SolveParams::default(), &solution)?, None);
+    Ok(())
+}
+
+/// The image of the unit disc under z = ζ + mζⁿ: n − 1 ripples, or with nm near 1 as many sharp notches.
+struct Rippled {
+    n: u32,
+    m: f64,
+}
+
+impl Rippled {
+    fn section(&self) -> Result<Section, Box<dyn Error>> {
+        let Self { n, m } = self;
+        let formula = |f: &str| Expression::parse(&format!("{f}(t) + {m}*{f}({n}*t)"), &["t"]);
+        let (x, y) = (formula("cos")?, formula("sin")?);
+        let curve = Curve::Parametric { x, y, from_t: 0.0, to_t: std::f64::consts::TAU };
+        let edges = vec![OutlineEdge { name: "e1".into(), curve, nodes: None }];
+        Ok(Section::solid(Outline { vertices: vec![[1.0 + m, 0.0]], edges }))
+    }
+
+    /// 2∫F over the disc, F = (H − |z|²)/2 with the harmonic H = 1 + m² + 2m·Re ζⁿ⁻¹ that is |z|² on the circle.
+    fn j(&self) -> f64 {
+        let (n, m2) = (f64::from(self.n), self.m * self.m);
+        let plain = 0.5 * (1.0 + m2) - 0.25 - m2 / (2.0 * n + 2.0);
+        let stretched = n * n * m2 * ((1.0 + m2) / (2.0 * n) - 1.0 / (2.0 * n + 2.0) - m2 / (4.0 * n));
+        let mixed = 2.0 * n * m2 * (1.0 / (2.0 * n) - 1.0 / (2.0 * n + 2.0));
+        std::f64::consts::TAU * (plain + stretched + mixed)
+    }
+
+    /// |∇F| at the ground of a notch.
+    fn tau_max(&self) -> f64 {
+        let (n, m) = (f64::from(self.n), self.m);
+        (1.0 + n * m * m - 2.0 * m) / (1.0 - n * m)
+    }
+}
+
+/// Nodes of a boundary may miss ripples altogether, or see others that are not there, and all fields then agree about a section
+/// that is another one. Arc lengths tell.
+#[test]
+fn what_boundary_nodes_do_not_see_is_in_the_estimate() -> Result<(), Box<dyn Error>> {
+    // (section, nodes across, whether all segments are smooth)
+    let cases = [
+        (Rippled { n: 61, m: 0.0015 }, 21, false),
+        (Rippled { n: 61, m: 0.0015 }, 121, true),
+        (Rippled { n: 31, m: 0.006 }, 11, false),
+        (Rippled { n: 31, m: 0.02 }, 9, false),
+        (Rippled { n: 31, m: 0.02 }, 5, false),
+        (Rippled { n: 121, m: 0.002 }, 41, false),
+        (Rippled { n: 4, m: 0.24 }, 21, false),
+        (Rippled { n: 4, m: 0.24 }, 41, false),
+        (Rippled { n: 3, m: 0.1 }, 41, true),
+    ];
+    for (rippled, nodes, is_seen) in cases {
+        let section = rippled.section()?;
+        for (irregularity, formulation) in [(0.0, Formulation::Variational), (0.25, Formulation::Local)] {
+            let label = format!("ζ + {}ζ^{}, {nodes} nodes, irregularity {irregularity}", rippled.m, rippled.n);
+            let cloud = CloudParams { nodes: [nodes, nodes], irregularity, ..CloudParams::default() };
+            let mesh = Mesh::constrained(generate(&section, &cloud)?)?;
+            assert_eq!(hidden_bends(&section, mesh.cloud())?.is_empty(), is_seen, "{label}");
+            let (problem, params) = (TorsionProblem::default(), SolveParams { formulation, ..SolveParams::default() });
+            let solution = solve(&problem, &mesh, &params)?;
+            let estimate = estimate(&problem, &mesh, &section, &params, &solution)?.ok_or("no hole")?;
+            let error = (solution.j - rippled.j()).abs();
+            assert!(error <= estimate.j, "{label}: J is off by {error:e}, not {:e}", estimate.j);
+            let error = (solution.tau_max.value - rippled.tau_max()).abs();
+            assert!(error <= estimate.tau_max, "{label}: τ is off by {error:e}, not {:e}", estimate.tau_max);
+            if is_seen {
+                assert!(estimate.relative(solution.j) < 1e-3, "{label}: {:e}", estimate.relative(solution.j));
+            }
+        }
+    }
     Ok(())
 }

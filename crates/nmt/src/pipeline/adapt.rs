@@ -10,6 +10,7 @@ use crate::error::NmtError;
 use crate::problem::Problem;
 use crate::report::vertex_angles;
 use nmt_cloud::{DEFAULT_GROWTH, MIN_SPACING_REL, Refinement, Target};
+use nmt_geom::point::distance;
 use nmt_geom::{NodeId, Point};
 use nmt_mfdm::{ErrorEstimate, Formulation};
 use nmt_tri::NodeTris;
@@ -65,6 +66,13 @@ const MOST_STEPS: usize = 14;
 
 /// By how much the number of nodes grows in one step, at most: what coarse clouds foretell is not to be relied on.
 const MOST_GROWTH: f64 = 4.0;
+
+/// By how much it may grow with what lies between fine places and coarse ones. That is foretold only beyond this: elsewhere it is
+/// little.
+const MOST_GRADED_GROWTH: f64 = 6.0;
+
+/// Passes over the nodes, to and fro, in which a small spacing is felt around it.
+const PASSES: usize = 4;
 
 /// By how much it grows at least: what is nearly good enough shall not be solved again and again.
 const LEAST_GROWTH: f64 = 1.6;
@@ -255,12 +263,12 @@ enum Next {
 /// What the next cloud shall be, its spacing growing by `growth`.
 fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize, growth: f64) -> Next {
     let cloud = solved.part.mesh.cloud();
-    let spacing = spacings(solved);
+    let (spacing, least) = (spacings(solved), least_spacing(solved));
     let (factors, corners) = match solved.estimate.made() {
         Some(estimate) if estimate.relative(solved.solution.j) <= tolerance => return Next::Met,
         Some(estimate) => {
             let sought = Sought::new(solved, estimate, tolerance);
-            (sought.factors(), sought.corners(growth))
+            (sought.factors(&spacing, growth), sought.corners(growth))
         }
         // Too coarse to say anything: half the spacing everywhere.
         None => (vec![0.5; cloud.n_nodes()], Vec::new()),
@@ -271,7 +279,7 @@ fn next(solved: &SolvedPart, tolerance: f64, most_nodes: usize, growth: f64) -> 
     }
     let at = |(node, factor): (usize, f64)| Refinement {
         target: Target::Point(cloud.xy()[node]),
-        size: (factor * spacing[node]).max(least_spacing(solved)),
+        size: (factor * spacing[node]).max(least),
         growth,
     };
     let everywhere = factors.into_iter().enumerate().map(at);
@@ -328,8 +336,8 @@ impl<'a> Sought<'a> {
         }
     }
 
-    /// New spacing over old at every node.
-    fn factors(&self) -> Vec<f64> {
+    /// New spacing over old at every node, that being `spacing`; the new one grows by `rise` a unit of length.
+    fn factors(&self, spacing: &[f64], rise: f64) -> Vec<f64> {
         // N = S·τ^(−1/(p+1)) triangles that contribute τ each; N·τ = all.
         let power = 1.0 / (self.order + 1.0);
         let sum: f64 = self.indicators.iter().map(|own| own.powf(power)).sum();
@@ -345,8 +353,34 @@ impl<'a> Sought<'a> {
         let bounded = growth(each).clamp(LEAST_GROWTH, MOST_GROWTH);
         let each = if growth(each) == bounded { each } else { self.each_for(bounded, growth) };
         let n_nodes = self.solved.part.mesh.cloud().n_nodes();
-        let largest = |node: usize| self.around(node).fold(0.0, f64::max);
-        (0..n_nodes).map(|node| factor_of(each, largest(node))).collect()
+        let largest: Vec<f64> = (0..n_nodes).map(|node| self.around(node).fold(0.0, f64::max)).collect();
+        let factors = |each: f64| largest.iter().map(|own| factor_of(each, *own)).collect::<Vec<_>>();
+        let graded_growth = |each: f64| self.graded_growth(spacing, &factors(each), rise);
+        // A few triangles much worse than all others bring many nodes along with them.
+        let each = match graded_growth(each) > MOST_GRADED_GROWTH {
+            true => self.each_for(MOST_GROWTH, graded_growth).max(each),
+            false => each,
+        };
+        factors(each)
+    }
+
+    /// By how much the number of nodes grows, with those that the rise of the spacing from fine places brings.
+    fn graded_growth(&self, spacing: &[f64], factors: &[f64], rise: f64) -> f64 {
+        let mesh = &self.solved.part.mesh;
+        let mut new: Vec<f64> = spacing.iter().zip(factors).map(|(h, factor)| h * factor).collect();
+        let feel = |new: &mut [f64], node: usize| {
+            for &t in self.node_tris.around(NodeId::of(node)) {
+                for other in mesh.tri_nodes()[t.index()] {
+                    let apart = distance(mesh.xy()[node], mesh.xy()[other.index()]);
+                    new[node] = new[node].min(new[other.index()] + rise * apart);
+                }
+            }
+        };
+        for _ in 0..PASSES {
+            (0..new.len()).for_each(|node| feel(&mut new, node));
+            (0..new.len()).rev().for_each(|node| feel(&mut new, node));
+        }
+        spacing.iter().zip(&new).map(|(h, new)| (h / new).powi(2)).sum::<f64>() / spacing.len() as f64
     }
 
     /// The contribution with which the number of nodes grows by `wanted`.

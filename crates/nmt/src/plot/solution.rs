@@ -69,7 +69,7 @@ pub(super) const POISSON: [Panel; 4] = [
 /// Where the error of J comes from.
 pub(super) const INDICATOR: [Panel; 1] = [Panel {
     name: "Density e of the error of J:",
-    symbol: "log e",
+    symbol: "log₁₀ e",
     subscript: "",
     map: Map::Sequential,
     id: "indicator",

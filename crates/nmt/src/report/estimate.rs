@@ -2,7 +2,7 @@
 
 use crate::pipeline::SolvedPart;
 use crate::report::singular::singular_vertices;
-use crate::report::text::number;
+use crate::report::text::{number, significant};
 use serde::Serialize;
 
 /// Estimates of the errors of a solution; see [`nmt_mfdm::ErrorEstimate`].
@@ -45,9 +45,13 @@ impl ErrorEstimateReport {
         let [low, high] = self.j_bounds;
         let distance = (high - low) / high.abs();
         let digits = if distance > 0.0 { (1.5 - distance.log10()).ceil().clamp(7.0, 15.0) as usize } else { 15 };
-        let rounded = |bound: f64| format!("{bound:.*e}", digits - 1).parse::<f64>().unwrap_or(bound);
-        let middle = rounded(0.5 * (low + high));
-        format!("{} to {}{unit}, their middle {middle} is the best value", rounded(low), rounded(high))
+        let rounded = |bound: f64| significant(bound, digits);
+        let bounds = format!("{} to {}{unit}", rounded(low), rounded(high));
+        // J is as far from the farther bound as its error is estimated: then farther from all between the bounds than half of
+        // their distance, which the middle is at most.
+        let is_nearer = self.j >= 1.5 * (high - low);
+        let of_middle = || format!("{bounds}, their middle {} is nearer than J", rounded(0.5 * (low + high)));
+        if is_nearer { of_middle() } else { bounds.clone() }
     }
 
     /// The errors, in the order of the results.

@@ -12,7 +12,8 @@ use crate::report::singular::singular_vertices;
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::tolerance::ToleranceReport;
-use crate::report::{warnings, wishes};
+use crate::report::warnings::{self, CloudView};
+use crate::report::wishes;
 use nmt_cloud::{Achieved, Census, Closing, Cloud, CloudQuality, Section};
 use nmt_geom::{NodeId, Point};
 use nmt_tri::{MeshCensus, quality};
@@ -316,7 +317,7 @@ impl Report {
         let subdomains = parts.iter().map(|part| cloud_report(&part.name, &part.edge_names, &part.cloud)).collect();
         let mut report = Self::new(problem, subdomains);
         report.common_edges = common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, &part.cloud)));
-        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.name, &part.cloud)));
+        report.warn_of_clouds(problem, parts.iter().map(CloudView::from));
         report
     }
 
@@ -333,7 +334,7 @@ impl Report {
         let mut report = Self::new(problem, parts.iter().map(mesh_report).collect());
         report.common_edges =
             common::of_parts(parts.iter().map(|part| (&*part.name, &part.section, part.mesh.cloud())));
-        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.name, part.mesh.cloud())));
+        report.warn_of_clouds(problem, parts.iter().map(CloudView::from));
         if !problem.mesh.elimination.is_whole() {
             report.warnings.extend(parts.iter().filter_map(warnings::of_mesh));
         }
@@ -348,7 +349,7 @@ impl Report {
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
         let points = points::report(&fields, points, PointValues::of_torsion);
-        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.part.name, part.part.mesh.cloud())));
+        report.warn_of_clouds(problem, parts.iter().map(|part| CloudView::from(&part.part)));
         report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_solution(part)));
         report.warnings.extend(points.iter().filter_map(warnings::of_point));
@@ -363,7 +364,7 @@ impl Report {
         report.common_edges = common::of_parts(meshes.map(|part| (&*part.name, &part.section, part.mesh.cloud())));
         let fields: Vec<_> = parts.iter().map(|solved| (&solved.part, &solved.solution.field)).collect();
         let points = points::report(&fields, points, PointValues::of_poisson);
-        report.warn_of_clouds(problem, parts.iter().map(|part| (&*part.part.name, part.part.mesh.cloud())));
+        report.warn_of_clouds(problem, parts.iter().map(|part| CloudView::from(&part.part)));
         report.warn_of_sections(problem, parts.iter().map(|part| (&*part.part.name, &part.part.section)));
         parts.iter().for_each(|part| report.warnings.extend(warnings::of_poisson(part)));
         report.warnings.extend(points.iter().filter_map(warnings::of_point));
@@ -380,9 +381,10 @@ impl Report {
     }
 
     /// `clouds` are those of the subdomains in order.
-    fn warn_of_clouds<'a>(&mut self, problem: &Problem, clouds: impl Iterator<Item = (&'a str, &'a Cloud)>) {
-        for ((name, cloud), subdomain) in clouds.zip(&problem.subdomains) {
-            self.warnings.extend(warnings::of_cloud(name, cloud));
+    fn warn_of_clouds<'a>(&mut self, problem: &Problem, clouds: impl Iterator<Item = CloudView<'a>>) {
+        for (part, subdomain) in clouds.zip(&problem.subdomains) {
+            let CloudView { name, cloud, .. } = part;
+            self.warnings.extend(warnings::of_cloud(part));
             let asked = subdomain.grading.as_ref();
             let wishes = |asked| wishes::without_effect(name, asked, cloud, problem.solve.tolerance.is_some());
             self.warnings.extend(asked.into_iter().flat_map(wishes));

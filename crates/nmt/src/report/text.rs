@@ -325,15 +325,21 @@ pub fn place([x, y]: [f64; 2]) -> String {
 
 /// Seven significant digits, with an exponent where zeros would hide them.
 pub(super) fn number(v: f64) -> String {
-    let size = v.abs();
+    significant(v, 7)
+}
+
+/// A number of so many significant digits, without trailing zeros where it is written out; very large and very small ones have
+/// an exponent.
+pub fn significant(v: f64, digits: usize) -> String {
+    let (size, last) = (v.abs(), digits.saturating_sub(1));
     if size == 0.0 {
         "0".into()
     } else if (1e-4..1e7).contains(&size) {
-        let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
+        let decimals = (last as i32 - size.log10().floor() as i32).max(0) as usize;
         let text = format!("{v:.decimals$}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
     } else {
-        format!("{v:.6e}")
+        format!("{v:.last$e}")
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the user should know before trusting a number.
 
-use crate::pipeline::{MeshPart, PoissonPart, SolvedPart};
+use crate::pipeline::{CloudPart, MeshPart, PoissonPart, SolvedPart};
 use crate::report::common::CommonEdgeReport;
 use crate::report::points::PointReport;
 use crate::report::singular::singular_vertices;
@@ -8,14 +8,39 @@ use crate::report::text::{counted, place};
 use crate::report::thickness::{FEWEST_ACROSS, thinnest};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_mfdm::{Formulation, HoleCondition, LinearSolve, Load, SolveParams, StarChoice, StarReport, Test, Trial};
+use nmt_mfdm::{
+    Formulation, HiddenBends, HoleCondition, LinearSolve, Load, SolveParams, StarChoice, StarReport, Test, Trial,
+    hidden_bends,
+};
 
 /// Spacings of a larger ratio than this are warned of: the clearances, which go by the larger one, then clear whole rows of
 /// nodes beside the boundary.
 const UNEQUAL_SPACINGS: f64 = 2.0;
 
+/// A subdomain with its cloud.
+#[derive(Clone, Copy)]
+pub(super) struct CloudView<'a> {
+    pub name: &'a str,
+    pub edge_names: &'a [String],
+    pub section: &'a Section,
+    pub cloud: &'a Cloud,
+}
+
+impl<'a> From<&'a CloudPart> for CloudView<'a> {
+    fn from(part: &'a CloudPart) -> Self {
+        Self { name: &part.name, edge_names: &part.edge_names, section: &part.section, cloud: &part.cloud }
+    }
+}
+
+impl<'a> From<&'a MeshPart> for CloudView<'a> {
+    fn from(part: &'a MeshPart) -> Self {
+        Self { name: &part.name, edge_names: &part.edge_names, section: &part.section, cloud: part.mesh.cloud() }
+    }
+}
+
 /// Warnings of a cloud.
-pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Vec<String> {
+pub(super) fn of_cloud(part: CloudView) -> Vec<String> {
+    let CloudView { name, cloud, .. } = part;
     let mut warnings = Vec::new();
     let [h_x, h_y] = cloud.spacing();
     let ratio = h_x.max(h_y) / h_x.min(h_y);
@@ -41,7 +66,25 @@ pub(super) fn of_cloud(name: &str, cloud: &Cloud) -> Vec<String> {
             place(spot.at)
         ));
     }
+    warnings.extend(of_hidden_bends(part));
     warnings
+}
+
+/// Edges that bend between neighbouring nodes.
+fn of_hidden_bends(CloudView { name, edge_names, section, cloud }: CloudView) -> Vec<String> {
+    // An edge that has no length is told where it matters: it has no cloud.
+    let bends = hidden_bends(section, cloud).unwrap_or_default();
+    let warning = |HiddenBends { edge, segments, of, at, .. }: HiddenBends| {
+        let edge = edge_names.get(edge.index()).map_or("", String::as_str);
+        format!(
+            "subdomain \"{name}\": edge \"{edge}\" bends between boundary nodes more than they show, in {segments} of its {}, \
+             most near {}: what is computed is another section there, and the largest τ may be missed; choose larger \
+             densities, nodes on that edge, refine = [{{ edge = \"{edge}\", size = … }}], or solve to a tolerance",
+            counted(of, "segment", "segments"),
+            place(at)
+        )
+    };
+    bends.into_iter().map(warning).collect()
 }
 
 /// A mesh that is not sound, as one is without all steps of elimination.
