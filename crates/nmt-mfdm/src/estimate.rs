@@ -6,6 +6,7 @@
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.
 
+use crate::blend::NodalPolynomials;
 use crate::boundary_value::recover;
 use crate::error::MfdmError;
 use crate::gauss::six_points;
@@ -13,17 +14,21 @@ use crate::hidden::Hidden;
 use crate::lanes::Lanes;
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
+use crate::post::torque;
 use crate::problem::{Load, TorsionProblem};
 use crate::quadrature::RuleLanes;
 use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::true_edges::{ALONG, Piece, Sample, visit_pieces};
-use crate::warping::{NodalWarping, Warping, warping_params};
+use crate::warping::{NodalWarping, Warping, elements_params, warping_params};
 use nmt_cloud::Section;
 use nmt_geom::point::{dot, sub};
 use nmt_geom::{LoopId, NodeId, Point, TriId};
 use nmt_tri::Mesh;
+
+/// An estimated error of J, as a part of it, beyond which a second warping function is found.
+const DOUBTFUL: f64 = 0.005;
 
 /// How far the results of a [`TorsionSolution`] may be off.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,53 +109,87 @@ pub fn estimate_observed(
     if !problem.has_torsion_constant(mesh.cloud().boundary().n_loops() - 1) {
         return Ok(None);
     }
-    let params = warping_params(params);
-    let nodal = NodalWarping::solve(mesh, section, &params, None, observer)?;
-    let [field] = recover(mesh, &params, [&nodal.values], observer)?;
-    let warping = nodal.with_field(field);
-    bounds(problem, mesh, section, solution, &warping).map(Some)
+    let case = Case { problem, mesh, section, params, solution };
+    case.estimate(&case.warping(&warping_params(params), observer)?, observer).map(Some)
 }
 
-/// What the stress function and the warping function say of each other.
-///
-/// # Errors
-/// [`MfdmError::Curve`] where an edge has no length, [`MfdmError::Singular`] where a number is none.
-pub(crate) fn bounds(
-    problem: &TorsionProblem,
-    mesh: &Mesh,
-    section: &Section,
-    solution: &TorsionSolution,
-    warping: &Warping,
-) -> Result<ErrorEstimate, MfdmError> {
-    let both = Both { mesh, solution, warping };
-    let beyond = Beyond::new(&both, section)?;
-    let parts = both.over_triangles();
-    let mut indicators: Vec<f64> = parts.iter().map(|own| own.square).collect();
-    for &(triangle, [square, _]) in &beyond.slivers {
-        indicators[triangle.index()] += square;
+/// A torsion problem and its solution.
+#[derive(Clone, Copy)]
+pub(crate) struct Case<'a> {
+    pub problem: &'a TorsionProblem,
+    pub mesh: &'a Mesh,
+    pub section: &'a Section,
+    pub params: &'a SolveParams,
+    pub solution: &'a TorsionSolution,
+}
+
+impl Case<'_> {
+    /// The estimate by a warping function; where that leaves J in doubt, as it may at unresolved fillets and in thin walls, the
+    /// best one of those with the linear interpolant of the stress function, with the warping function of linear elements, and
+    /// with both: coarse clouds make polynomials overshoot, and any function gives bounds.
+    ///
+    /// # Errors
+    /// [`MfdmError::Curve`] where an edge has no length, [`MfdmError::Singular`] where a number is none.
+    pub fn estimate(&self, warping: &Warping, observer: &mut dyn FnMut(Event)) -> Result<ErrorEstimate, MfdmError> {
+        let mut best = self.bounds(&self.solution.field, warping)?;
+        if best.relative(self.solution.j) <= DOUBTFUL {
+            return Ok(best);
+        }
+        let linear = NodalPolynomials::linear(self.mesh, &self.solution.f);
+        let by_elements = self.warping(&elements_params(self.params), observer).ok();
+        let recovered = &self.solution.field;
+        let others = [(&linear, Some(warping)), (recovered, by_elements.as_ref()), (&linear, by_elements.as_ref())];
+        for (field, warping) in others {
+            let other = warping.and_then(|warping| self.bounds(field, warping).ok());
+            best = other.filter(|other| other.j < best.j).unwrap_or(best);
+        }
+        Ok(best)
     }
-    let product = parts.iter().map(|own| own.product).sum::<f64>() + beyond.product;
-    let square = indicators.iter().sum::<f64>();
-    for &(triangle, [_, lacking]) in &beyond.slivers {
-        indicators[triangle.index()] += lacking.abs();
+
+    fn warping(&self, params: &SolveParams, observer: &mut dyn FnMut(Event)) -> Result<Warping, MfdmError> {
+        let nodal = NodalWarping::solve(self.mesh, self.section, params, None, observer)?;
+        let [field] = recover(self.mesh, params, [&nodal.values], observer)?;
+        Ok(nodal.with_field(field))
     }
-    // J = 2∫v over the polygon; ∫∇v·(∇v − σ) is what 4∫v − ∫|∇v|² lies below it.
-    let low = solution.j - product;
-    let j_bounds = [low - beyond.hidden, low + square + beyond.hidden];
-    let rounding = f64::EPSILON * mesh.cloud().n_nodes() as f64;
-    let j = j_bounds.iter().map(|bound| (bound - solution.j).abs()).fold(rounding * solution.j.abs(), f64::max);
-    let relative = j / solution.j.abs();
-    let (torque, twist) = match problem.load {
-        Load::Twist(_) => (relative * solution.torque.abs(), 0.0),
-        Load::Torque(_) => (0.0, relative * solution.twist.abs()),
-    };
-    let of_load = if twist > 0.0 { relative * solution.tau_max.value } else { 0.0 };
-    let tau_max = (both.tau_max(&beyond) + of_load).max(rounding * solution.tau_max.value);
-    let numbers = [j, low, square, tau_max];
-    if numbers.iter().any(|number| !number.is_finite()) {
-        return Err(MfdmError::Singular { n: mesh.cloud().n_nodes() });
+
+    /// What a field of the stress function and a warping function say of each other.
+    ///
+    /// # Errors
+    /// As [`Self::estimate`].
+    fn bounds(&self, field: &NodalPolynomials, warping: &Warping) -> Result<ErrorEstimate, MfdmError> {
+        let Self { problem, mesh, section, solution, .. } = *self;
+        let both = Both { mesh, solution, field, warping };
+        let beyond = Beyond::new(&both, section)?;
+        let parts = both.over_triangles();
+        let mut indicators: Vec<f64> = parts.iter().map(|own| own.square).collect();
+        for &(triangle, [square, _]) in &beyond.slivers {
+            indicators[triangle.index()] += square;
+        }
+        let product = parts.iter().map(|own| own.product).sum::<f64>() + beyond.product;
+        let square = indicators.iter().sum::<f64>();
+        for &(triangle, [_, lacking]) in &beyond.slivers {
+            indicators[triangle.index()] += lacking.abs();
+        }
+        // ∫∇v·(∇v − σ) is what 4∫v − ∫|∇v|² lies below 2∫v, here over the polygon.
+        let (constants, areas): (Vec<f64>, Vec<f64>) =
+            solution.holes.iter().map(|hole| (hole.f / solution.g_theta, hole.area)).unzip();
+        let low = torque(field.volume(mesh) / solution.g_theta, &constants, &areas) - product;
+        let j_bounds = [low - beyond.hidden, low + square + beyond.hidden];
+        let rounding = f64::EPSILON * mesh.cloud().n_nodes() as f64;
+        let j = j_bounds.iter().map(|bound| (bound - solution.j).abs()).fold(rounding * solution.j.abs(), f64::max);
+        let relative = j / solution.j.abs();
+        let (torque, twist) = match problem.load {
+            Load::Twist(_) => (relative * solution.torque.abs(), 0.0),
+            Load::Torque(_) => (0.0, relative * solution.twist.abs()),
+        };
+        let of_load = if twist > 0.0 { relative * solution.tau_max.value } else { 0.0 };
+        let tau_max = (both.tau_max(&beyond) + of_load).max(rounding * solution.tau_max.value);
+        let numbers = [j, low, square, tau_max];
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Err(MfdmError::Singular { n: mesh.cloud().n_nodes() });
+        }
+        Ok(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear: warping.linear })
     }
-    Ok(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear: warping.linear })
 }
 
 /// Integrals over a triangle.
@@ -164,13 +203,15 @@ struct Parts {
 struct Both<'a> {
     mesh: &'a Mesh,
     solution: &'a TorsionSolution,
+    /// v, in the solution's unit.
+    field: &'a NodalPolynomials,
     warping: &'a Warping,
 }
 
 impl Both<'_> {
     /// [v, ∇v, σ] for Gθ = 1 at `p`, continued from `triangle`.
     fn at(&self, triangle: TriId, p: Point) -> (f64, Point, Point) {
-        let (v, gradient) = self.solution.field.slope(self.mesh, triangle, p);
+        let (v, gradient) = self.field.slope(self.mesh, triangle, p);
         let scale = 1.0 / self.solution.g_theta;
         (v * scale, gradient.map(|slope| slope * scale), self.warping.stress_at(self.mesh, triangle, p))
     }
@@ -184,10 +225,8 @@ impl Both<'_> {
     }
 
     fn over(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
-        let (v, sigma) = (
-            self.solution.field.slopes_at(self.mesh, triangle, rule),
-            self.warping.stresses_at(self.mesh, triangle, rule),
-        );
+        let (v, sigma) =
+            (self.field.slopes_at(self.mesh, triangle, rule), self.warping.stresses_at(self.mesh, triangle, rule));
         let (scale, area) = (1.0 / self.solution.g_theta, self.mesh.area(triangle));
         let [mut product, mut square] = [Lanes::default(); 2];
         for ((v, sigma), weight) in v.iter().zip(sigma).zip(rule.weights) {

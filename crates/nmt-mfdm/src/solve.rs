@@ -4,7 +4,7 @@ use crate::blend::NodalPolynomials;
 use crate::boundary_value::{Discrete, NodalSolution, nodal_solution, recover, solve_discrete};
 use crate::circulation::hole_area;
 use crate::error::MfdmError;
-use crate::estimate::{ErrorEstimate, bounds};
+use crate::estimate::{Case, ErrorEstimate};
 use crate::flux::Fluxes;
 use crate::params::SolveParams;
 use crate::post::{extremes, torque};
@@ -142,7 +142,8 @@ pub fn solve_estimated(
     let solution = results(problem, mesh, nodal, field)?;
     observer(Event::Ended(Stage::Post));
     observer(Event::Begun(Stage::Estimate));
-    let estimate = warping.and_then(|warping| bounds(problem, mesh, section, &solution, &warping).map(Some));
+    let case = Case { problem, mesh, section, params, solution: &solution };
+    let estimate = warping.and_then(|warping| case.estimate(&warping, &mut within(observer)).map(Some));
     observer(Event::Ended(Stage::Estimate));
     Ok((solution, estimate))
 }

@@ -51,8 +51,13 @@ pub(crate) fn warping_params(params: &SolveParams) -> SolveParams {
     }
 }
 
+/// How it is found where that leaves J in doubt: by linear finite elements, whose w is never much worse than the mesh.
+pub(crate) fn elements_params(params: &SolveParams) -> SolveParams {
+    SolveParams { formulation: Formulation::Fem, ..warping_params(params) }
+}
+
 impl NodalWarping {
-    /// Solves for w with [`warping_params`], its equations taken over from the `operator` of the stress function where
+    /// Solves for w with [`warping_params`] or [`elements_params`], its equations taken over from the `operator` of the stress function where
     /// that has the same.
     ///
     /// w is known up to a constant: it is 0 at the first vertex.
