@@ -73,8 +73,8 @@ pub struct Refinement {
 /// How the spacing of a cloud varies: the least of a function, of refinements, and of the uniform spacing.
 ///
 /// Wherever the function rises faster than `growth`, the spacing rises by that from the places where the function is small;
-/// |∇h| ≤ growth everywhere, and at most ⅓: neighbouring nodes would be too unlike beyond. An edge that is shorter than the nodes it must have want it, or that has a count of its own,
-/// counts as a refinement of its own.
+/// |∇h| ≤ growth everywhere, and at most ⅓: neighbouring nodes would be too unlike beyond. An edge that is shorter than the
+/// nodes it must have want it, or that has a count of its own, counts as a refinement of its own.
 ///
 /// ```
 /// use nmt_cloud::{CloudParams, Grading, Section, generate};

@@ -2,7 +2,7 @@
 //!
 //! Integrals over slivers take a piece of an edge as its four places show it, and fields see nothing of it but its ends. Arc
 //! lengths are exact, whatever happens between: a piece longer than the parabola through its ends and its middle does
-//! something that these do not tell. With e the relative length that is left, the piece lies within c·√(e/2) of what is known
+//! something that these do not tell, and so does one that begins in another direction. With e the relative length that is left, the piece lies within c·√(e/2) of what is known
 //! of it, c its chord, and the slopes it has beyond that are √(2e) on average.
 
 use crate::error::MfdmError;
@@ -18,6 +18,10 @@ const HIDDEN_REL: f64 = 0.25;
 /// Excess lengths less than this are rounding, and so is this part of the edge's length, which arc lengths are accurate to.
 const ROUNDING: f64 = 1.0e-8;
 const LENGTH_ROUNDING_REL: f64 = 1.0e-10;
+
+/// So does one that begins or ends otherwise than the parabola by more than this part of its slope there, and this, rad.
+const SLOPE_REL: f64 = 0.5;
+const SLOPE_ROOM: f64 = 0.02;
 
 /// A hidden excess length that is told: slopes of 4 % on average.
 const TOLD: f64 = 1.0e-3;
@@ -51,16 +55,24 @@ impl Hidden {
         }
         let ends = [piece.point(0.0), piece.point(1.0)];
         let chord = distance(ends[0], ends[1]);
-        let sagitta = distance(piece.point(0.5), lerp(ends[0], ends[1], 0.5));
         if chord == 0.0 {
             return None;
         }
-        let (excess, smooth) = (piece.length / chord - 1.0, excess_of_parabola(sagitta / chord));
-        let hidden = excess - smooth;
+        let bulge = sub(piece.point(0.5), lerp(ends[0], ends[1], 0.5));
+        let (height, along) = (bulge[0].hypot(bulge[1]) / chord, sub(ends[1], ends[0]));
+        let (excess, smooth) = (piece.length / chord - 1.0, excess_of_parabola(height));
         let rounding = ROUNDING + LENGTH_ROUNDING_REL * piece.edge_length() / chord;
-        if hidden.is_nan() || hidden <= HIDDEN_REL * smooth + rounding {
+        // One ripple from crest to crest is as long as the parabola through its trough, but does not begin as that does.
+        let slope = (4.0 * height).atan().copysign(cross(along, bulge));
+        let turn_from = |expected: f64, tangent: Point| (turn(along, tangent) - expected).abs();
+        let at_ends = turn_from(slope, piece.tangent(0.0)).max(turn_from(-slope, piece.tangent(1.0)));
+        let is_longer = excess - smooth > HIDDEN_REL * smooth + rounding;
+        let begins_otherwise = at_ends > SLOPE_REL * slope.abs() + SLOPE_ROOM;
+        if !is_longer && !begins_otherwise {
             return None;
         }
+        // A slope that falls from there to none has a third of its square on average.
+        let hidden = (excess - smooth).max(at_ends * at_ends / 6.0);
         let Bend { turn, radius } = Bend::sharpest(piece);
         // The depth of a notch that the whole piece is one side of, or of a ripple in it.
         let depth = (chord * (0.5 * hidden).sqrt()).max(0.5 * chord * (1.0 - turn.min(1.5).cos()));
@@ -68,6 +80,11 @@ impl Hidden {
         let area = chord * chord * hidden + (area_of(piece) - area_seen(piece)).abs();
         Some(Self { excess: hidden, area, concentration })
     }
+}
+
+/// The angle from one direction to another, counter-clockwise in (−π, π].
+fn turn(from: Point, to: Point) -> f64 {
+    cross(from, to).atan2(dot(from, to))
 }
 
 /// (length − chord)/chord of a parabola by its height over its chord.
@@ -130,7 +147,7 @@ impl Search<'_, '_> {
     /// Adds a stretch from one (fraction, unit tangent) to another.
     fn add(&mut self, from: (f64, Point), to: (f64, Point), halvings: usize) {
         // The material is on the left: a turn to the right is one into it.
-        let turned = -cross(from.1, to.1).atan2(dot(from.1, to.1));
+        let turned = -turn(from.1, to.1);
         if turned.abs() > TURN && halvings > 0 {
             let middle = 0.5 * (from.0 + to.0);
             let between = (middle, self.piece.tangent(middle));

@@ -78,7 +78,7 @@ fn of_hidden_bends(CloudView { name, edge_names, section, cloud }: CloudView) ->
         let edge = edge_names.get(edge.index()).map_or("", String::as_str);
         format!(
             "subdomain \"{name}\": edge \"{edge}\" bends between boundary nodes more than they show, in {segments} of its {}, \
-             most near {}: what is computed is another section there, and the largest τ may be missed; choose larger \
+             most near {}: what is computed is another section there, and peaks may be missed; choose larger \
              densities, nodes on that edge, refine = [{{ edge = \"{edge}\", size = … }}], or solve to a tolerance",
             counted(of, "segment", "segments"),
             place(at)
