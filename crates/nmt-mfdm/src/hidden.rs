@@ -2,11 +2,12 @@
 //!
 //! Integrals over slivers take a piece of an edge as its four places show it, and fields see nothing of it but its ends. Arc
 //! lengths are exact, whatever happens between: a piece longer than the parabola through its ends and its middle does
-//! something that these do not tell, and so does one that begins in another direction. With e the relative length that is left, the piece lies within c·√(e/2) of what is known
-//! of it, c its chord, and the slopes it has beyond that are √(2e) on average.
+//! something that these do not tell, and so does one that begins in another direction. With e the relative length that is
+//! left, the piece lies within c·√(e/2) of what is known of it, c its chord, and the slopes it has beyond that are √(2e) on
+//! average.
 
 use crate::error::MfdmError;
-use crate::true_edges::{ALONG, Piece, visit_edges};
+use crate::true_edges::{Piece, visit_edges};
 use nmt_cloud::{Cloud, Section};
 use nmt_geom::point::{cross, distance, dot, lerp, sub};
 use nmt_geom::{EdgeId, Point};
@@ -36,8 +37,6 @@ const MOST_HALVINGS: usize = 24;
 /// What a piece of an edge hides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hidden {
-    /// Excess length beyond the parabola, as a fraction of the chord.
-    pub excess: f64,
     /// How much area it may gain or lose the section, length².
     pub area: f64,
     /// By how much, relatively, the stress at its sharpest bend into the material exceeds that of a smooth edge.
@@ -50,36 +49,40 @@ pub(crate) struct Hidden {
 impl Hidden {
     /// What a piece hides; `None` where it is as smooth as it seems.
     pub fn of(piece: &Piece) -> Option<Self> {
-        if piece.is_straight {
-            return None;
-        }
-        let ends = [piece.point(0.0), piece.point(1.0)];
-        let chord = distance(ends[0], ends[1]);
-        if chord == 0.0 {
-            return None;
-        }
-        let bulge = sub(piece.point(0.5), lerp(ends[0], ends[1], 0.5));
-        let (height, along) = (bulge[0].hypot(bulge[1]) / chord, sub(ends[1], ends[0]));
-        let (excess, smooth) = (piece.length / chord - 1.0, excess_of_parabola(height));
-        let rounding = ROUNDING + LENGTH_ROUNDING_REL * piece.edge_length() / chord;
-        // One ripple from crest to crest is as long as the parabola through its trough, but does not begin as that does.
-        let slope = (4.0 * height).atan().copysign(cross(along, bulge));
-        let turn_from = |expected: f64, tangent: Point| (turn(along, tangent) - expected).abs();
-        let at_ends = turn_from(slope, piece.tangent(0.0)).max(turn_from(-slope, piece.tangent(1.0)));
-        let is_longer = excess - smooth > HIDDEN_REL * smooth + rounding;
-        let begins_otherwise = at_ends > SLOPE_REL * slope.abs() + SLOPE_ROOM;
-        if !is_longer && !begins_otherwise {
-            return None;
-        }
-        // A slope that falls from there to none has a third of its square on average.
-        let hidden = (excess - smooth).max(at_ends * at_ends / 6.0);
+        let hidden = hidden_excess(piece)?;
+        let chord = distance(piece.point(0.0), piece.point(1.0));
         let Bend { turn, radius } = Bend::sharpest(piece);
         // The depth of a notch that the whole piece is one side of, or of a ripple in it.
         let depth = (chord * (0.5 * hidden).sqrt()).max(0.5 * chord * (1.0 - turn.min(1.5).cos()));
         let concentration = if turn > 0.0 { (depth / radius).sqrt() } else { 0.0 };
-        let area = chord * chord * hidden + (area_of(piece) - area_seen(piece)).abs();
-        Some(Self { excess: hidden, area, concentration })
+        let seen: f64 = piece.beyond_segment().map(|(_, area)| area).sum();
+        let area = chord * chord * hidden + (area_of(piece) - seen).abs();
+        Some(Self { area, concentration })
     }
+}
+
+/// Excess length of a piece beyond the parabola, as a fraction of the chord; `None` where it is as smooth as it seems.
+fn hidden_excess(piece: &Piece) -> Option<f64> {
+    if piece.is_straight {
+        return None;
+    }
+    let ends = [piece.point(0.0), piece.point(1.0)];
+    let chord = distance(ends[0], ends[1]);
+    if chord == 0.0 {
+        return None;
+    }
+    let bulge = sub(piece.point(0.5), lerp(ends[0], ends[1], 0.5));
+    let (height, along) = (bulge[0].hypot(bulge[1]) / chord, sub(ends[1], ends[0]));
+    let (excess, smooth) = (piece.length / chord - 1.0, excess_of_parabola(height));
+    let rounding = ROUNDING + LENGTH_ROUNDING_REL * piece.edge_length() / chord;
+    // One ripple from crest to crest is as long as the parabola through its trough, but does not begin as that does.
+    let slope = (4.0 * height).atan().copysign(cross(along, bulge));
+    let turn_from = |expected: f64, tangent: Point| (turn(along, tangent) - expected).abs();
+    let at_ends = turn_from(slope, piece.tangent(0.0)).max(turn_from(-slope, piece.tangent(1.0)));
+    let is_longer = excess - smooth > HIDDEN_REL * smooth + rounding;
+    let begins_otherwise = at_ends > SLOPE_REL * slope.abs() + SLOPE_ROOM;
+    // A slope that falls from there to none has a third of its square on average.
+    (is_longer || begins_otherwise).then(|| (excess - smooth).max(at_ends * at_ends / 6.0))
 }
 
 /// The angle from one direction to another, counter-clockwise in (−π, π].
@@ -99,19 +102,6 @@ fn area_of(piece: &Piece) -> f64 {
     let from = piece.point(0.0);
     let at = |k: usize| sub(piece.point(k as f64 / STRETCHES as f64), from);
     -0.5 * (0..STRETCHES).map(|k| cross(at(k), at(k + 1))).sum::<f64>()
-}
-
-/// The same by the places that integrals take.
-fn area_seen(piece: &Piece) -> f64 {
-    let (from, to) = (piece.point(0.0), piece.point(1.0));
-    let forward = sub(to, from);
-    let out = |s: f64| sub(piece.point(s), lerp(from, to, s));
-    // Trapezia between chord and piece, as in its sliver.
-    let part = |[s, weight]: [f64; 2]| {
-        let along = piece.direction(s).map(|c| c * piece.length);
-        weight * cross(out(s), lerp(forward, along, 0.5))
-    };
-    ALONG.into_iter().map(part).sum()
 }
 
 /// A bend of a piece into the material.
@@ -210,7 +200,7 @@ pub fn hidden_bends(section: &Section, cloud: &Cloud) -> Result<Vec<HiddenBends>
         section,
         |_| true,
         |segment, piece| {
-            let excess = Hidden::of(piece).map_or(0.0, |hidden| hidden.excess);
+            let excess = hidden_excess(piece).unwrap_or(0.0);
             if all.last().is_none_or(|last| last.edge != segment.edge) {
                 all.push(HiddenBends { edge: segment.edge, segments: 0, of: 0, at: piece.point(0.5), excess: 0.0 });
             }

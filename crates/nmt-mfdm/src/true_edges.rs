@@ -150,6 +150,11 @@ impl<'a> Piece<'a> {
 
     /// Places in the sliver between it and its segment, continued from `triangle`.
     pub fn sliver(&self, triangle: TriId) -> impl Iterator<Item = Sample> + '_ {
+        self.beyond_segment().map(move |(at, weight)| Sample { triangle, at, weight })
+    }
+
+    /// Places in the sliver with their areas, as of [`Sample::weight`].
+    pub fn beyond_segment(&self) -> impl Iterator<Item = (Point, f64)> + '_ {
         let curved: &[[f64; 2]] = if self.is_straight { &[] } else { &ALONG };
         curved.iter().flat_map(move |&[s, weight]| {
             let (at, chord) = (self.point(s), lerp(self.from, self.to, s));
@@ -157,7 +162,7 @@ impl<'a> Piece<'a> {
             let along = self.direction(s).map(|c| c * self.length);
             ACROSS.iter().map(move |&[t, share]| {
                 let by_s = lerp(forward, along, t);
-                Sample { triangle, at: lerp(chord, at, t), weight: weight * share * cross(out, by_s) }
+                (lerp(chord, at, t), weight * share * cross(out, by_s))
             })
         })
     }
@@ -169,19 +174,22 @@ impl<'a> Piece<'a> {
 
     /// Unit tangent at fraction `s` of its length, forwards along it even where it turns back.
     pub fn tangent(&self, s: f64) -> Point {
-        let tangent = self.curve.direction_at(self.table.parameter_at(self.at(s)));
-        let length = tangent[0].hypot(tangent[1]).max(f64::MIN_POSITIVE);
-        let sign = if self.s[1] < self.s[0] { -1.0 } else { 1.0 };
-        tangent.map(|c| sign * c / length)
+        self.unit_tangent(s, |_| self.s[1] < self.s[0])
     }
 
     /// Unit vector along it at fraction `s` of its length.
     pub fn direction(&self, s: f64) -> Point {
-        let chord = sub(self.to, self.from);
-        let tangent =
-            if self.is_straight { chord } else { self.curve.direction_at(self.table.parameter_at(self.at(s))) };
+        self.unit_tangent(s, |tangent| dot(tangent, sub(self.to, self.from)) < 0.0)
+    }
+
+    /// The tangent of its curve, or that turned round.
+    fn unit_tangent(&self, s: f64, is_turned: impl Fn(Point) -> bool) -> Point {
+        let tangent = match self.is_straight {
+            true => sub(self.to, self.from),
+            false => self.curve.direction_at(self.table.parameter_at(self.at(s))),
+        };
         let length = tangent[0].hypot(tangent[1]).max(f64::MIN_POSITIVE);
-        let sign = if dot(tangent, chord) < 0.0 { -1.0 } else { 1.0 };
+        let sign = if is_turned(tangent) { -1.0 } else { 1.0 };
         tangent.map(|c| sign * c / length)
     }
 }

@@ -47,11 +47,13 @@ impl ErrorEstimateReport {
         let digits = if distance > 0.0 { (1.5 - distance.log10()).ceil().clamp(7.0, 15.0) as usize } else { 15 };
         let rounded = |bound: f64| significant(bound, digits);
         let bounds = format!("{} to {}{unit}", rounded(low), rounded(high));
-        // J is as far from the farther bound as its error is estimated: then farther from all between the bounds than half of
-        // their distance, which the middle is at most.
-        let is_nearer = self.j >= 1.5 * (high - low);
-        let of_middle = || format!("{bounds}, their middle {} is nearer than J", rounded(0.5 * (low + high)));
-        if is_nearer { of_middle() } else { bounds.clone() }
+        // The error of J is estimated as its distance from the farther bound: then J is farther from all that lies between the
+        // bounds than half of what they are apart, and the middle is not.
+        if self.j >= 1.5 * (high - low) {
+            format!("{bounds}, their middle {} is nearer than J", rounded(0.5 * (low + high)))
+        } else {
+            bounds
+        }
     }
 
     /// The errors, in the order of the results.
