@@ -3,9 +3,10 @@
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
+use crate::row_sum::RowSum;
 use crate::source::Source;
 use crate::stencils::Stencils;
-use crate::system::{Equation, NodeCondition, Roles, RowSum};
+use crate::system::{Equation, NodeCondition, Roles};
 use nmt_geom::NodeId;
 use nmt_tri::{Mesh, NodeTris};
 

@@ -3,7 +3,8 @@
 use crate::assembly::Frame;
 use crate::element::Element;
 use crate::problem::Formulation;
-use crate::system::{Equation, RowSum};
+use crate::row_sum::RowSum;
+use crate::system::Equation;
 use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::{LoopId, NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};

@@ -2,7 +2,7 @@
 
 use crate::basis::{INVERSE, monomials, row};
 use crate::blend::barycentric_gradients;
-use nmt_geom::point::{cross, dot, sub};
+use nmt_geom::point::{cross, sub};
 use nmt_geom::{NodeId, Point, TriId};
 use nmt_tri::Mesh;
 
@@ -29,35 +29,17 @@ impl Element {
         barycentric_gradients(self.corners)
     }
 
-    /// Place of one of its nodes.
+    /// A triangle with one of its nodes first, which lies `at` its place.
     #[inline(always)]
-    pub fn corner_of(&self, node: NodeId) -> usize {
-        if self.nodes[0] == node {
-            0
-        } else if self.nodes[1] == node {
-            1
-        } else {
-            2
-        }
-    }
-
-    /// Its corner at one of its nodes, the two nodes that follow counter-clockwise, and the places of all three from there on.
-    #[inline(always)]
-    pub fn seen_from(&self, node: NodeId) -> (usize, [NodeId; 2], [Point; 3]) {
-        let ([a, b, c], [p, q, r]) = (self.nodes, self.corners);
-        match self.corner_of(node) {
-            0 => (0, [b, c], [p, q, r]),
-            1 => (1, [c, a], [q, r, p]),
-            _ => (2, [a, b], [r, p, q]),
-        }
-    }
-
-    /// ∫|∇v|² of the hat of one of its nodes: the square of the opposite side over four times the area.
-    #[inline]
-    pub fn hat_energy_of(&self, node: NodeId) -> f64 {
-        let (_, _, [_, from, to]) = self.seen_from(node);
-        let opposite = sub(to, from);
-        dot(opposite, opposite) / (4.0 * self.area)
+    pub fn about(mesh: &Mesh, triangle: TriId, node: NodeId, at: Point) -> Self {
+        let [a, b, c] = mesh.tri_nodes()[triangle.index()];
+        // Which of three it is cannot be foreseen: looked up, not branched on.
+        let first = usize::from(b == node) + 2 * usize::from(c == node);
+        let following = [b, c, a, b, b];
+        let (next, last) = (following[first], following[first + 1]);
+        let [from, to] = [next, last].map(|node| mesh.xy()[node.index()]);
+        let area = cross(sub(from, at), sub(to, at)) / 2.0;
+        Self { triangle, nodes: [node, next, last], corners: [at, from, to], area }
     }
 }
 
@@ -119,6 +101,7 @@ mod tests {
     use super::*;
     use crate::basis::{MAX_MONOMIALS, MAX_ORDER};
     use crate::gauss::Rule;
+    use nmt_geom::point::dot;
 
     #[test]
     fn the_flow_through_the_sides_is_that_of_a_rule_that_is_exact() {

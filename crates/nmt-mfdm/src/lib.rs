@@ -37,6 +37,7 @@ pub mod exact;
 mod flux;
 mod galerkin;
 mod gauss;
+mod hat;
 mod hidden;
 #[cfg(feature = "kernels")]
 #[doc(hidden)]
@@ -56,6 +57,7 @@ mod problem;
 mod quadrature;
 mod quartet;
 mod repair;
+mod row_sum;
 mod shapes;
 mod slopes;
 mod solution;

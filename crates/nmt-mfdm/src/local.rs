@@ -3,11 +3,12 @@
 use crate::assembly::{Frame, Setting, dirichlet_row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
+use crate::row_sum::RowSum;
 use crate::slopes::KnownSlopes;
 use crate::solve::{Event, Stage};
 use crate::stencils::{Kept, StarParams, StarReport, Stencils};
 use crate::surroundings::Surroundings;
-use crate::system::{LinearSystem, RowSum};
+use crate::system::LinearSystem;
 use crate::system_maker::SystemMaker;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
@@ -78,7 +79,7 @@ pub(crate) fn assemble_in_batches(
 }
 
 /// Appends the equations of `unknowns`.
-fn append(setting: &Setting, unknowns: Range<usize>, made: &mut SystemMaker) -> Result<(), MfdmError> {
+fn append(setting: &Setting, unknowns: Range<usize>, made: &mut SystemMaker<RowSum>) -> Result<(), MfdmError> {
     let Setting { frame: Frame { mesh, roles, source, .. }, stencils } = setting;
     // Only smoothing polynomials have Dirichlet rows, which are summed.
     let sum = || RowSum::new(if stencils.interpolates() { 0 } else { mesh.cloud().n_nodes() });

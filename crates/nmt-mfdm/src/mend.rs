@@ -13,7 +13,7 @@ use crate::gauss::Rule;
 use crate::stencils::Stencils;
 use crate::surroundings::Surroundings;
 use crate::system::{LinearSystem, Role};
-use crate::variational::{EquationMaker, Firmness};
+use crate::variational::{EquationMaker, EquationRoom, Firmness};
 use crate::weak::WeakForm;
 use nmt_cloud::Nearest;
 use nmt_geom::NodeId;
@@ -51,11 +51,11 @@ pub(crate) fn mend(
         sizes.extend(larger);
         let setting: Setting = frame.with(stencils);
         let weak = WeakForm::blended(stencils, frame.fluxes, rule);
-        let mut maker = EquationMaker::new(&setting, &weak);
+        let (maker, mut room) = (EquationMaker { setting: &setting, weak: &weak }, EquationRoom::of(&setting));
         let touched = touched(frame, &soft);
         soft.clear();
         for &k in &touched {
-            let equation = maker.of(k)?;
+            let equation = maker.of(k, &mut room)?;
             if among.contains(&k) && is_soft(frame, k, equation.row.of_unknown(k)) {
                 soft.push(frame.roles.node(k));
             }

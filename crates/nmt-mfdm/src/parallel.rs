@@ -47,21 +47,23 @@ pub(crate) fn take_pieces<T: Send>(
 }
 
 /// What pieces of work need and leave as they found it, such as large rooms: as many as are at work at once.
-pub(crate) struct Pool<W, F: Fn() -> W> {
+#[derive(Debug)]
+pub(crate) struct Pool<W> {
     idle: Mutex<Vec<W>>,
-    make: F,
 }
 
-impl<W, F: Fn() -> W> Pool<W, F> {
-    pub fn new(make: F) -> Self {
-        Self { idle: Mutex::new(Vec::new()), make }
+impl<W> Default for Pool<W> {
+    fn default() -> Self {
+        Self { idle: Mutex::default() }
     }
+}
 
-    /// `work` with one of them, which must not change the result.
-    pub fn with<T>(&self, work: impl FnOnce(&mut W) -> T) -> T {
+impl<W> Pool<W> {
+    /// `work` with one of them, which must not change the result, or with one that is made.
+    pub fn with<T>(&self, make: impl FnOnce() -> W, work: impl FnOnce(&mut W) -> T) -> T {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let found = idle().pop();
-        let mut worker = found.unwrap_or_else(&self.make);
+        let mut worker = found.unwrap_or_else(make);
         let result = work(&mut worker);
         idle().push(worker);
         result

@@ -1,12 +1,12 @@
 //! The right side of −∇²u = s, and its integrals with the hats.
 
-use crate::element::Element;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
+use crate::hat::Hat;
 use crate::true_edges::of_triangle;
 use crate::weak::places;
-use nmt_geom::{NodeId, Point};
+use nmt_geom::Point;
 use nmt_tri::{Mesh, barycentric};
 
 /// s of −∇²u = s.
@@ -33,32 +33,27 @@ impl Source<'_> {
         }
     }
 
-    /// ∫s·v + ∫q·v of the hat v of a node, over the elements around it.
+    /// ∫s·v + ∫q·v of a hat v.
     ///
     /// # Errors
     /// As [`Self::at`].
-    pub fn with_hat(
-        &self,
-        mesh: &Mesh,
-        rule: &Rule,
-        fluxes: &Fluxes,
-        node: NodeId,
-        around: &[Element],
-    ) -> Result<f64, MfdmError> {
-        let mut sum = 0.0;
-        for element in around {
-            let corner = element.corner_of(node);
-            match self {
-                // ∫v is a third of the triangle's area.
-                Self::Constant(value) if fluxes.slivers.is_empty() => sum += value * element.area / 3.0,
-                _ => {
-                    for (p, weight) in places(mesh, rule, fluxes, element.triangle) {
-                        sum += weight * self.at(p)? * barycentric(element.corners, p)[corner];
-                    }
+    pub fn with_hat(&self, mesh: &Mesh, rule: &Rule, fluxes: &Fluxes, hat: &Hat) -> Result<f64, MfdmError> {
+        let constant = match self {
+            Self::Constant(value) if fluxes.slivers.is_empty() => Some(value * hat.volume()),
+            _ => None,
+        };
+        let mut sum = constant.unwrap_or(0.0);
+        if constant.is_some() && fluxes.edges.is_empty() {
+            return Ok(sum);
+        }
+        for element in hat.elements() {
+            if constant.is_none() {
+                for (p, weight) in places(mesh, rule, fluxes, element.triangle) {
+                    sum += weight * self.at(p)? * barycentric(element.corners, p)[0];
                 }
             }
             for sample in of_triangle(&fluxes.edges, element.triangle) {
-                sum += sample.weight * barycentric(element.corners, sample.at)[corner];
+                sum += sample.weight * barycentric(element.corners, sample.at)[0];
             }
         }
         Ok(sum)

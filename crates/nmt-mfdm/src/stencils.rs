@@ -5,6 +5,7 @@ use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::parallel::map_owned;
 use crate::repair::{Demand, StarOutcome};
+use crate::row_sum::Marks;
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
 use crate::sound_stars::{SoundStars, Wanted};
@@ -119,11 +120,13 @@ impl Kept {
 }
 
 /// Where a star is, and how large.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
 struct Star {
     start: usize, // its first node; its rows begin where so many rows' worth of nodes do
-    size: u32,    // nodes in it
     radius: f64,  // user's length unit
+    size: u32,    // nodes in it
+    marks: Marks, // of its nodes, where it is of the usual size and has the rows of all derivatives; none otherwise
 }
 
 /// [`StarOutcome`] in 16 bytes.
@@ -252,6 +255,7 @@ pub struct Stencil<'a> {
     pub nodes: &'a [NodeId],
     /// Radius of the star in stretched coordinates, user's length unit.
     pub radius: f64,
+    marks: &'a Marks,
     first_row: usize,
     rows: &'a [f64],
 }
@@ -267,6 +271,12 @@ impl<'a> Stencil<'a> {
     /// All rows, from [`Self::first_row`] on.
     pub(crate) fn rows(&self) -> &'a [f64] {
         self.rows
+    }
+
+    /// Its nodes as bits, where those lie in few words.
+    #[inline(always)]
+    pub(crate) fn marks(&self) -> Option<&'a Marks> {
+        (!self.marks.is_none()).then_some(self.marks)
     }
 
     /// 1 where the polynomial meets the centre's value exactly, so that there is no row for it; 0 where it smooths.
@@ -345,7 +355,7 @@ impl Stencils {
         all.nodes.resize(n * all.size, NodeId(0));
         all.rows.resize(n * n_rows * all.size, 0.0);
         all.stars.clear();
-        all.stars.extend((0..n).map(|k| Star { start: k * params.size, size: 0, radius: 0.0 }));
+        all.stars.extend((0..n).map(|k| Star { start: k * params.size, ..Star::default() }));
         all.outcomes.resize(n, Outcome::default());
         let size = all.size.max(1);
         let mut pieces = (0..n)
@@ -363,7 +373,9 @@ impl Stencils {
             let demand = |node: NodeId| demand_of(params, surroundings, node, known.get(&node), params.size);
             let (mut k, mut others) = (0, Vec::new());
             finder.each(nodes, demand, kept.wanted(), |star| {
-                (piece.stars[k].size, piece.stars[k].radius) = (star.nodes.len() as u32, star.radius);
+                let own = &mut piece.stars[k];
+                (own.size, own.radius) = (star.nodes.len() as u32, star.radius);
+                own.marks = if kept == Kept::Derivatives { Marks::of(star.nodes) } else { Marks::default() };
                 piece.outcomes[k] = Outcome::from(star.outcome);
                 if star.nodes.len() == size {
                     piece.nodes[k * size..(k + 1) * size].copy_from_slice(star.nodes);
@@ -406,7 +418,8 @@ impl Stencils {
     /// Gives the node at a place another star; that it had is left.
     fn append(&mut self, place: usize, nodes: &[NodeId], rows: &[f64]) {
         // Rows begin where nodes do.
-        (self.stars[place].start, self.stars[place].size) = (self.nodes.len(), nodes.len() as u32);
+        let star = &mut self.stars[place];
+        (star.start, star.size, star.marks) = (self.nodes.len(), nodes.len() as u32, Marks::default());
         self.nodes.extend(nodes);
         self.rows.extend(rows);
     }
@@ -446,7 +459,7 @@ impl Stencils {
     pub(crate) fn constants(n_nodes: usize) -> Self {
         let mut stencils = Self::empty(StarParams::nearest(0, 0), Metric::plain());
         stencils.of = Numbers::Consecutive(0..n_nodes);
-        stencils.stars = vec![Star { start: 0, size: 0, radius: 1.0 }; n_nodes];
+        stencils.stars = vec![Star { radius: 1.0, ..Star::default() }; n_nodes];
         stencils
     }
 
@@ -518,12 +531,13 @@ impl Stencils {
     /// The stencil of a node of the range.
     #[inline(always)]
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
-        let Star { start, size, radius } = self.stars[self.of.place(node)];
-        let star = start..start + size as usize;
+        let Star { start, size, radius, marks } = &self.stars[self.of.place(node)];
+        let star = *start..*start + *size as usize;
         let n_rows = self.n_rows();
         Stencil {
             nodes: &self.nodes[star.clone()],
-            radius,
+            radius: *radius,
+            marks,
             first_row: self.params.first_row(),
             rows: &self.rows[n_rows * star.start..n_rows * star.end],
         }

@@ -3,6 +3,7 @@
 
 use crate::error::MfdmError;
 use crate::problem::HoleCondition;
+use crate::row_sum::RowSum;
 use crate::solver::csr::Csr;
 use nmt_geom::{LoopId, NodeId, Point};
 use nmt_tri::Mesh;
@@ -185,86 +186,6 @@ impl SplitRow {
 pub(crate) struct Equation {
     pub row: SplitRow,
     pub rhs: f64,
-}
-
-/// Sums coefficients by node, to be used again for the next row; O(entries).
-///
-/// Nodes near each other have numbers near each other: which are touched is a bit each, and those bits lie in few words.
-#[derive(Clone, Debug)]
-pub(crate) struct RowSum {
-    sums: Vec<f64>,  // shape (n_nodes,), zero where untouched
-    bits: Vec<u64>,  // of the nodes touched
-    words: Vec<u32>, // of `bits` that are not zero
-}
-
-impl RowSum {
-    pub fn new(n_nodes: usize) -> Self {
-        let n_words = n_nodes.div_ceil(u64::BITS as usize);
-        Self { sums: vec![0.0; n_nodes], bits: vec![0; n_words], words: Vec::new() }
-    }
-
-    /// Adds `coefficient` times the value of `node`.
-    #[inline(always)]
-    pub fn add(&mut self, node: NodeId, coefficient: f64) {
-        self.add_all(&[node], &[coefficient]);
-    }
-
-    /// Adds to the coefficients of several nodes.
-    #[inline(always)]
-    pub fn add_all<const N: usize>(&mut self, nodes: &[NodeId; N], coefficients: &[f64; N]) {
-        for node in nodes {
-            let word = node.0 / u64::BITS;
-            let bits = &mut self.bits[word as usize];
-            if *bits == 0 {
-                Self::touch(&mut self.words, word);
-            }
-            *bits |= 1 << (node.0 % u64::BITS);
-        }
-        nodes.iter().zip(coefficients).for_each(|(node, coefficient)| self.sums[node.index()] += coefficient);
-    }
-
-    /// Out of line: most nodes come where others have been.
-    #[cold]
-    #[inline(never)]
-    fn touch(words: &mut Vec<u32>, word: u32) {
-        words.push(word);
-    }
-
-    /// The coefficient of a node so far.
-    pub fn of(&self, node: NodeId) -> f64 {
-        self.sums[node.index()]
-    }
-
-    /// Number of nodes touched so far.
-    pub fn n_nodes(&self) -> usize {
-        self.words.iter().map(|&word| self.bits[word as usize].count_ones() as usize).sum()
-    }
-
-    /// No node touched so far comes before this one.
-    pub fn least(&self) -> NodeId {
-        NodeId(self.words.iter().min().map_or(0, |word| word * u64::BITS))
-    }
-
-    /// The row so far, by role; begins the next one.
-    pub fn take(&mut self, roles: &Roles) -> SplitRow {
-        let mut row = SplitRow::default();
-        self.drain(|node, sum| row.add(roles.of(node), sum));
-        row
-    }
-
-    /// Hands over (node, sum) by ascending number; begins the next row.
-    #[inline]
-    pub fn drain(&mut self, mut to: impl FnMut(NodeId, f64)) {
-        self.words.sort_unstable();
-        for word in self.words.drain(..) {
-            let mut bits = std::mem::take(&mut self.bits[word as usize]);
-            while bits != 0 {
-                let node = NodeId(word * u64::BITS + bits.trailing_zeros());
-                bits &= bits - 1;
-                to(node, std::mem::take(&mut self.sums[node.index()]));
-            }
-        }
-    }
 }
 
 /// A·x = b by rows, with what the constants of the holes add: A·x + Σ c_k·B_k = b.

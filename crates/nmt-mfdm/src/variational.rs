@@ -1,10 +1,11 @@
 //! The variational formulation with linear hats as test functions, and linear finite elements; paper, eq. (18) \[D13\].
 
 use crate::assembly::{Frame, Setting, dirichlet_row};
-use crate::element::Element;
 use crate::error::MfdmError;
+use crate::hat::Hat;
 use crate::parallel::{Pool, map_chunks};
-use crate::system::{Equation, LinearSystem, RowSum};
+use crate::row_sum::RowSum;
+use crate::system::{Equation, LinearSystem};
 use crate::system_maker::SystemMaker;
 use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::NodeId;
@@ -26,10 +27,10 @@ pub(crate) fn append(
     setting: &Setting,
     weak: &WeakForm,
     unknowns: Range<usize>,
-    made: &mut SystemMaker,
+    made: &mut SystemMaker<EquationRoom>,
 ) -> Result<Vec<Firmness>, MfdmError> {
-    let maker = || EquationMaker::new(setting, weak);
-    made.extend(unknowns, maker, |maker, k, system| maker.append(k, system))
+    let (maker, room) = (EquationMaker { setting, weak }, || EquationRoom::of(setting));
+    made.extend(unknowns, room, |room, k, system| maker.append(k, room, system))
 }
 
 /// The equations of `unknowns`, each with its number.
@@ -41,69 +42,78 @@ pub(crate) fn equations(
     weak: &WeakForm,
     unknowns: &[usize],
 ) -> Result<Vec<(usize, Equation)>, MfdmError> {
-    let makers = Pool::new(|| EquationMaker::new(setting, weak));
+    let (maker, rooms) = (EquationMaker { setting, weak }, Pool::default());
     let pieces = map_chunks(0..unknowns.len(), |piece| {
-        makers
-            .with(|maker| unknowns[piece].iter().map(|&k| Ok((k, maker.of(k)?))).collect::<Result<Vec<_>, MfdmError>>())
+        let of_piece = |room: &mut EquationRoom| {
+            unknowns[piece].iter().map(|&k| Ok((k, maker.of(k, room)?))).collect::<Result<Vec<_>, MfdmError>>()
+        };
+        rooms.with(|| EquationRoom::of(setting), of_piece)
     });
     Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// Makes equations; one a thread, with room to be used again.
+/// Makes equations.
+#[derive(Clone, Copy)]
 pub(crate) struct EquationMaker<'a> {
-    setting: &'a Setting<'a>,
-    weak: &'a WeakForm<'a>,
-    sum: RowSum,
-    gathered: Gathered,
-    around: Vec<Element>, // the node under way
+    pub setting: &'a Setting<'a>,
+    pub weak: &'a WeakForm<'a>,
 }
 
-impl<'a> EquationMaker<'a> {
-    pub fn new(setting: &'a Setting<'a>, weak: &'a WeakForm<'a>) -> Self {
-        let sum = RowSum::new(setting.frame.mesh.cloud().n_nodes());
-        Self { setting, weak, sum, gathered: Gathered::default(), around: Vec::new() }
-    }
+/// Room to make equations in, to be used again: one a thread, since it is as large as the cloud.
+pub(crate) struct EquationRoom {
+    sum: RowSum,
+    gathered: Gathered,
+    hat: Hat,
+}
 
+impl EquationRoom {
+    pub fn of(setting: &Setting) -> Self {
+        let sum = RowSum::new(setting.frame.mesh.cloud().n_nodes());
+        Self { sum, gathered: Gathered::default(), hat: Hat::default() }
+    }
+}
+
+impl EquationMaker<'_> {
     /// The equation of unknown `k`.
     ///
     /// # Errors
     /// [`MfdmError::Datum`] where the source is not finite.
-    pub fn of(&mut self, k: usize) -> Result<Equation, MfdmError> {
-        let node = self.setting.frame.roles.node(k);
-        if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
+    pub fn of(&self, k: usize, room: &mut EquationRoom) -> Result<Equation, MfdmError> {
+        let roles = self.setting.frame.roles;
+        let node = roles.node(k);
+        if let Some(of_value) = dirichlet_row(self.setting, node, &mut room.sum)? {
             return Ok(of_value);
         }
-        let rhs = self.sum_up(node)?;
-        Ok(Equation { row: self.sum.take(self.setting.frame.roles), rhs })
+        let rhs = self.sum_up(node, room)?;
+        Ok(Equation { row: room.sum.take(roles), rhs })
     }
 
     /// Appends the equation of unknown `k`; tells how firmly it holds its node.
     ///
     /// # Errors
     /// As [`Self::of`].
-    fn append(&mut self, k: usize, system: &mut LinearSystem) -> Result<Firmness, MfdmError> {
+    fn append(&self, k: usize, room: &mut EquationRoom, system: &mut LinearSystem) -> Result<Firmness, MfdmError> {
         let roles = self.setting.frame.roles;
         let node = roles.node(k);
-        if let Some(of_value) = dirichlet_row(self.setting, node, &mut self.sum)? {
+        if let Some(of_value) = dirichlet_row(self.setting, node, &mut room.sum)? {
             let own = of_value.row.of_unknown(k);
             system.push(&of_value);
             return Ok(Firmness { own, energy: 0.0 });
         }
-        let rhs = self.sum_up(node)?;
-        let own = self.sum.of(node);
-        system.add_row(roles, &mut self.sum);
+        let rhs = self.sum_up(node, room)?;
+        let own = room.sum.of(node);
+        system.add_row(roles, &mut room.sum);
         system.end(rhs);
-        let energy = self.around.iter().map(|element| element.hat_energy_of(node)).sum();
-        Ok(Firmness { own, energy })
+        Ok(Firmness { own, energy: room.hat.energy() })
     }
 
     /// Sums up the left side of the equation with a node's hat; its right side.
-    fn sum_up(&mut self, node: NodeId) -> Result<f64, MfdmError> {
+    fn sum_up(&self, node: NodeId, room: &mut EquationRoom) -> Result<f64, MfdmError> {
         let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
-        self.around.clear();
-        self.around.extend(node_tris.around(node).iter().map(|&t| Element::new(mesh, t)));
-        self.weak.add(TestFunction::Hat(node, &self.around), &mut self.gathered, &mut self.sum);
-        source.with_hat(mesh, source_rule, fluxes, node, &self.around)
+        let EquationRoom { sum, gathered, hat } = room;
+        hat.become_of(node, mesh, node_tris);
+        self.weak.add(TestFunction::Hat(hat), gathered, sum);
+        source.with_hat(mesh, source_rule, fluxes, hat)
     }
 }
 
@@ -119,7 +129,8 @@ pub(crate) struct Firmness {
 impl Firmness {
     /// Of an equation whose coefficient of its own node is `own`.
     pub fn of(own: f64, frame: &Frame, node: NodeId) -> Self {
-        let elements = frame.node_tris.around(node).iter().map(|&t| Element::new(frame.mesh, t));
-        Self { own, energy: elements.map(|element| element.hat_energy_of(node)).sum() }
+        let mut hat = Hat::default();
+        hat.become_of(node, frame.mesh, frame.node_tris);
+        Self { own, energy: hat.energy() }
     }
 }

@@ -7,11 +7,12 @@ use crate::element::{CornerIntegrals, Element, side_means};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::gauss::Rule;
+use crate::hat::Hat;
 use crate::parallel::map_chunks;
 use crate::problem::Trial;
+use crate::row_sum::RowSum;
 use crate::shapes::{ShapeFinder, Shapes, TrialSpace};
 use crate::stencils::Stencils;
-use crate::system::RowSum;
 use crate::true_edges::of_triangle;
 use nmt_geom::point::{cross, dot, sub};
 use nmt_geom::{NodeId, TriId};
@@ -46,8 +47,8 @@ struct Integrals {
 pub(crate) enum TestFunction<'e> {
     /// Linear on one element, with this gradient.
     Linear(&'e Element, [f64; 2]),
-    /// The hat of a node, around which these elements are.
-    Hat(NodeId, &'e [Element]),
+    /// The hat of a node.
+    Hat(&'e Hat),
 }
 
 /// Room for one row, to be used again for the next.
@@ -74,25 +75,26 @@ impl Gathered {
     }
 
     /// Place of the moments of a node, which are 0 at first.
-    #[inline(always)]
     fn slot<const N: usize>(&mut self, node: NodeId) -> usize {
-        // Neighbours of one node are few and asked for in turn: a search from the end finds them at once.
-        self.nodes.iter().rposition(|n| *n == node).unwrap_or_else(|| {
-            self.nodes.push(node);
-            self.moments.extend([0.0; N]);
-            self.nodes.len() - 1
-        })
+        self.nodes.iter().position(|n| *n == node).unwrap_or_else(|| self.new_slot::<N>(node))
     }
 
-    /// As [`Self::slot`] for a node that `side` leads to from that of the hat, adding to the flow through the side.
+    /// A place for the moments of a node that has none.
+    fn new_slot<const N: usize>(&mut self, node: NodeId) -> usize {
+        self.nodes.push(node);
+        self.moments.extend([0.0; N]);
+        self.nodes.len() - 1
+    }
+
+    /// Places for the moments of the node of a hat, in slot 0, and of the second node of each element around it, with the
+    /// spokes between.
     #[inline(always)]
-    fn slot_at<const N: usize>(&mut self, node: NodeId, side: [f64; 2], flow: f64) -> usize {
-        let slot = self.slot::<N>(node);
-        match self.spokes.get_mut(slot - 1) {
-            Some(spoke) => spoke.flow += flow,
-            None => self.spokes.push(Spoke { side, flow }),
-        }
-        slot
+    fn begin_hat<const N: usize>(&mut self, node: NodeId, elements: &[Element]) {
+        self.nodes.push(node);
+        self.nodes.extend(elements.iter().map(|element| element.nodes[1]));
+        self.moments.resize(self.nodes.len() * N, 0.0);
+        let out = |element: &Element| sub(element.corners[1], element.corners[0]);
+        self.spokes.extend(elements.iter().map(|element| Spoke { side: out(element), flow: 0.0 }));
     }
 
     /// Adds what flows through the side from the node in slot `from` to that in `to`: `flow` times the mean of u, which blends
@@ -170,8 +172,8 @@ impl<'a> WeakForm<'a> {
             },
             TrialGradients::Integrated(integrals) => match test {
                 TestFunction::Linear(element, g) => add_integrated(integrals, element, g, sum),
-                TestFunction::Hat(node, around) => {
-                    around.iter().for_each(|e| add_integrated(integrals, e, e.slopes()[e.corner_of(node)], sum));
+                TestFunction::Hat(hat) => {
+                    hat.elements().iter().for_each(|e| add_integrated(integrals, e, e.slopes()[0], sum));
                 }
             },
         }
@@ -187,7 +189,7 @@ impl<'a> WeakForm<'a> {
         gathered.clear();
         match test {
             TestFunction::Linear(element, g) => self.gather_linear::<P, N>(element, g, gathered),
-            TestFunction::Hat(node, around) => self.gather_hat::<P, N>(node, around, gathered),
+            TestFunction::Hat(hat) => self.gather_hat::<P, N>(hat, gathered),
         }
         spread::<P, N>(stencils, gathered, sum);
     }
@@ -204,28 +206,35 @@ impl<'a> WeakForm<'a> {
         self.add_places::<P, N>(element, g, slots, gathered);
     }
 
-    fn gather_hat<const P: usize, const N: usize>(&self, node: NodeId, around: &[Element], gathered: &mut Gathered) {
-        let own = gathered.slot::<N>(node);
-        for element in around {
-            let (corner, [next, last], [at, from, to]) = element.seen_from(node);
+    fn gather_hat<const P: usize, const N: usize>(&self, hat: &Hat, gathered: &mut Gathered) {
+        let elements = hat.elements();
+        let Some(node) = elements.first().map(|element| element.nodes[0]) else { return };
+        gathered.begin_hat::<N>(node, elements);
+        for (k, element) in elements.iter().enumerate() {
+            let ([_, _, last], [at, from, to]) = (element.nodes, element.corners);
             let (opposite, factor) = (sub(to, from), -0.5 / element.area);
             // The gradient of the hat is normal to the opposite side, and 1 over the height.
             let flow = |side: [f64; 2]| factor * dot(opposite, side);
             let (out, back) = (sub(from, at), sub(to, at));
-            let slots = [gathered.slot_at::<N>(next, out, flow(out)), gathered.slot_at::<N>(last, back, -flow(back))];
+            // The element that follows counter-clockwise has its spoke; at the boundary none does.
+            let end = hat.element_from(last).unwrap_or_else(|| {
+                gathered.spokes.push(Spoke { side: back, flow: 0.0 });
+                gathered.new_slot::<N>(last) - 1
+            });
+            gathered.spokes[k].flow += flow(out);
+            gathered.spokes[end].flow -= flow(back);
+            let slots = [k + 1, end + 1];
             if self.is_exact::<P>() {
                 gathered.add_side::<P, N>(flow(opposite), opposite, slots);
             }
-            let mut of_corners = [own; 3];
-            (of_corners[(corner + 1) % 3], of_corners[(corner + 2) % 3]) = (slots[0], slots[1]);
             if !self.is_exact::<P>() || !of_triangle(&self.fluxes.slivers, element.triangle).is_empty() {
-                self.add_places::<P, N>(element, element.slopes()[corner], of_corners, gathered);
+                self.add_places::<P, N>(element, element.slopes()[0], [0, slots[0], slots[1]], gathered);
             }
         }
         if self.is_exact::<P>() {
             for k in 0..gathered.spokes.len() {
                 let Spoke { side, flow } = gathered.spokes[k];
-                gathered.add_side::<P, N>(flow, side, [own, k + 1]);
+                gathered.add_side::<P, N>(flow, side, [0, k + 1]);
             }
         }
     }
@@ -266,12 +275,10 @@ fn add_integrated(integrals: &[Integrals], element: &Element, g: [f64; 2], sum: 
 fn spread<const P: usize, const N: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mut RowSum) {
     let stretch = stencils.metric().stretch();
     for (&node, moments) in gathered.nodes.iter().zip(gathered.moments.as_chunks::<N>().0) {
-        if stencils.interpolates() {
-            sum.add(node, moments[0]);
-        }
         let stencil = stencils.of(node);
         // Rows are those of scaled coordinates.
-        let scale = stretch.map(|stretch| stretch / stencil.radius);
+        let inverse = 1.0 / stencil.radius;
+        let scale = stretch.map(|stretch| stretch * inverse);
         let mut powers = [1.0; N];
         for degree in 1..P + 1 {
             (0..degree).for_each(|b| powers[row(degree - b, b)] = scale[0] * powers[row(degree - 1 - b, b)]);
@@ -279,15 +286,22 @@ fn spread<const P: usize, const N: usize>(stencils: &Stencils, gathered: &mut Ga
         }
         (0..N).for_each(|m| powers[m] *= moments[m]);
         let factors = &powers[stencil.first_row()..];
-        if let Ok(nodes) = <&[NodeId; USUAL]>::try_from(stencil.nodes) {
+        if let (Ok(nodes), Some(marks)) = (<&[NodeId; USUAL]>::try_from(stencil.nodes), stencil.marks()) {
             let rows = stencil.rows().as_chunks().0;
             // Loops of known length take half the time.
             let of_star = match (<&[_; USUAL_ROWS]>::try_from(rows), <&[_; USUAL_ROWS]>::try_from(factors)) {
                 (Ok(rows), Ok(factors)) => combined::<USUAL>(rows, factors),
                 _ => combined::<USUAL>(rows, factors),
             };
-            sum.add_all(nodes, &of_star);
+            sum.add_marked(marks, nodes, &of_star);
+            if stencil.first_row() == 1 {
+                // A star has its own node.
+                sum.add_again(node, moments[0]);
+            }
             continue;
+        }
+        if stencils.interpolates() {
+            sum.add(node, moments[0]);
         }
         let of_star = &mut gathered.of_star;
         of_star.clear();
