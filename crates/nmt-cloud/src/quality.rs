@@ -59,6 +59,9 @@ const FEW_NEIGHBOURS: usize = 8;
 /// The same as a radius of spacings asked for: on a square lattice of such a spacing the nearest 8 are nearer.
 const FEW_REACH: f64 = 1.6;
 
+/// A radius of spacings asked for within which the nearest node is, as a rule.
+const NEAREST_REACH: f64 = 1.25;
+
 /// Nodes where the spacing asked for is widest that are looked at first: after them few cells have room for a larger circle.
 const WIDEST: usize = 64;
 
@@ -81,7 +84,7 @@ const BOUND_REL: f64 = 1.0e-9;
 /// The largest empty circle is looked for about the Voronoi vertices in the section and about the places where sides of Voronoi
 /// cells cross the boundary; where an edge has hundreds of nodes to a spacing of the interior, not for all of them, to one
 /// per cent. O(n): a tenth of a microsecond for a node amid others of a
-/// uniform lattice, a quarter for others, one microsecond where a circle might be the largest.
+/// uniform lattice, a quarter or a third for others, one microsecond where a circle might be the largest.
 ///
 /// ```
 /// use nmt_cloud::{CloudParams, Section, generate, quality};
@@ -117,6 +120,7 @@ pub fn quality(cloud: &Cloud) -> Option<CloudQuality> {
     }
     for (node, &p) in xy.iter().enumerate() {
         let quick = inner.as_ref().and_then(|inner| inner.nearest_distance(node));
+        let quick = quick.or_else(|| cells.nearest_among_closer(p, NEAREST_REACH * asked(node)?, fill));
         let quick = quick.or_else(|| {
             let radius = asked(node).map_or_else(|| nearest.first_radius(p, FEW_NEIGHBOURS), |h| FEW_REACH * h);
             cells.nearest_in_narrow_cell(p, radius, fill)
@@ -307,6 +311,51 @@ fn room_in_triangle([a, b, c]: [Point; 3]) -> f64 {
     }
 }
 
+/// What nodes around a node leave of its Voronoi cell, by eight sectors of directions: found without a branch.
+///
+/// The cell ends at 1/(2g) in the direction u, g the largest u·q/q² of all offsets q of nodes. In a sector between the directions
+/// v and w that is at least the lesser of v·q/q² and w·q/q², be q what it may.
+struct Sectors {
+    least: f64,         // q² of the nearest
+    ahead: [f64; 4],    // at least g in each of the sectors from 22.5° on
+    opposite: [f64; 4], // at most −g in those opposite
+}
+
+impl Sectors {
+    /// Of a node with no other around.
+    const EMPTY: Self = Self { least: f64::INFINITY, ahead: [0.0; 4], opposite: [0.0; 4] };
+
+    /// The directions between which sectors lie, and the opposite ones.
+    const LIMITS: [[f64; 4]; 2] = {
+        let (cos, sin) = (0.923_879_532_511_286_7, 0.382_683_432_365_089_8); // of 22.5°
+        [[cos, sin, -sin, -cos], [sin, cos, cos, sin]]
+    };
+
+    /// Takes in a node by its offset; the node itself, whose offset is 0, changes nothing.
+    #[inline(always)]
+    fn add(&mut self, q: Point) {
+        let square = dot(q, q);
+        let square = if square > 0.0 { square } else { f64::INFINITY };
+        let [x, y] = q.map(|c| c / square);
+        let least = |a: f64, b: f64| if a < b { a } else { b };
+        let largest = |a: f64, b: f64| if a > b { a } else { b };
+        self.least = least(self.least, square);
+        let [by_x, by_y] = Self::LIMITS;
+        let at: [f64; 4] = std::array::from_fn(|k| by_x[k] * x + by_y[k] * y);
+        let next = [at[1], at[2], at[3], -at[0]];
+        for k in 0..4 {
+            self.ahead[k] = largest(self.ahead[k], least(at[k], next[k]));
+            self.opposite[k] = least(self.opposite[k], largest(at[k], next[k]));
+        }
+    }
+
+    /// Whether no point of the cell is farther than `reach`.
+    fn are_within(&self, reach: f64) -> bool {
+        let enough = 0.5 / reach;
+        self.ahead.iter().all(|g| *g >= enough) && self.opposite.iter().all(|g| -g >= enough)
+    }
+}
+
 /// Voronoi cells of the nodes, one at a time.
 struct Cells<'a> {
     nearest: &'a Nearest<'a>,
@@ -353,6 +402,14 @@ impl Cells<'_> {
             self.meet_boundary(p, right, fill);
             return self.near.first().map(|(d2, _)| d2.sqrt());
         }
+    }
+
+    /// The distance from `p` to the nearest other node, where it is within `radius` and nodes about that near show that no point
+    /// of the cell of `p` is farther from it than `fill`: so it is where nodes are much closer than elsewhere.
+    fn nearest_among_closer(&self, p: Point, radius: f64, fill: f64) -> Option<f64> {
+        let mut sectors = Sectors::EMPTY;
+        self.nearest.visit_all(p, radius, &mut |_, q| sectors.add(sub(q, p)));
+        (sectors.least <= radius * radius && sectors.are_within(fill)).then(|| sectors.least.sqrt())
     }
 
     /// The distance from `p` to the nearest other node, where the nodes within `radius` show that no point of its cell is farther
@@ -457,12 +514,48 @@ mod tests {
     use crate::{Census, Grading, generate};
     use nmt_curve::Outline;
     use nmt_geom::{BoundaryLoop, EdgeId, NodeId};
+    use proptest::prelude::*;
 
     fn square_cloud(interior: Vec<Point>) -> Cloud {
         let corners = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
         let ring = BoundaryLoop { nodes: (0..4).map(NodeId).collect(), edges: (0..4).map(EdgeId).collect() };
         let boundary = RealBoundary::new(corners, vec![ring]).expect("a square");
         Cloud::from_parts(boundary, 4, interior, [1.0, 1.0], Census::default())
+    }
+
+    #[test]
+    fn sectors_reach_as_far_as_the_cell_and_not_much_farther() {
+        // A square lattice: its corners are 1/√2 away, and the sectors about them see that but for cos 22.5°.
+        let mut sectors = Sectors::EMPTY;
+        for q in (0..9).map(|k| [f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0]) {
+            sectors.add(q);
+        }
+        let reach = 0.5f64.sqrt() / (std::f64::consts::PI / 8.0).cos();
+        assert!(sectors.least == 1.0 && sectors.are_within(1.0001 * reach) && !sectors.are_within(0.9999 * reach));
+        // Without the nodes on one side it is open there.
+        let mut sectors = Sectors::EMPTY;
+        (0..6).for_each(|k| sectors.add([f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0]));
+        assert!(!sectors.are_within(1e9));
+    }
+
+    proptest! {
+        #[test]
+        fn what_sectors_cut_off_is_beyond_a_bisector(
+            offsets in prop::collection::vec(prop::array::uniform2(-2.0..2.0f64), 3..25),
+            reach in 0.5..20.0f64,
+        ) {
+            let mut sectors = Sectors::EMPTY;
+            offsets.iter().for_each(|q| sectors.add(*q));
+            let least = offsets.iter().map(|q| dot(*q, *q)).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(sectors.least, least);
+            if sectors.are_within(reach) {
+                for k in 0..720 {
+                    let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 360.0).sin_cos();
+                    let is_beyond = |q: &Point| 2.0 * dot([reach * cos, reach * sin], *q) > dot(*q, *q) * (1.0 - 1e-12);
+                    prop_assert!(offsets.iter().any(is_beyond), "{} half degrees", k);
+                }
+            }
+        }
     }
 
     #[test]
