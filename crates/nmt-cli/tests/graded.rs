@@ -175,6 +175,29 @@ fn wishes_that_change_nothing_are_told_with_a_remedy() {
 }
 
 #[test]
+fn dips_of_a_density_are_found_however_narrow_they_are() {
+    let directory = scratch("dips");
+    let report = |density: &str| {
+        let output = nmt(&["nodes", &l_with(&directory, &format!("density = \"{density}\"")), "--json"], "2");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let report = json(&output);
+        let number = |key: &str| report["subdomains"][0][key].as_u64().expect("a number");
+        let least = report["subdomains"][0]["local_spacing"]["min"].as_f64().expect("a spacing");
+        (number("nodes"), least, report["warnings"].to_string())
+    };
+    let (even, ..) = report("0.1 + 0*x");
+    let (peak, least, warnings) = report("0.1 - 0.09*exp(-((x - 0.337)^2 + (y - 0.741)^2)/1e-9)");
+    assert!(peak > even + 40 && least < 0.014 && !warnings.contains("`density`"), "{peak} {least} {warnings}");
+    let (crack, least, warnings) = report("0.1 - 0.09*(sign(x - 0.60001) - sign(x - 0.60002))/2");
+    assert!(crack > 3 * peak && least < 0.014 && !warnings.contains("`density`"), "{crack} {least} {warnings}");
+    // As a formula of the same spacing without the dips has it.
+    let (wide, ..) = report("min(0.1, 0.01 + 0.3*abs(x - 0.600015))");
+    assert!((0.95..1.1).contains(&(crack as f64 / wide as f64)), "{crack} {wide}");
+    let (comb, .., warnings) = report("0.1 - 0.0999*exp(-(1000*sin(3.1e4*x + 0.7))^2)");
+    assert!(comb < 2 * peak && warnings.contains("may have been passed over"), "{comb} {warnings}");
+}
+
+#[test]
 fn growth_alone_grades_a_cloud_towards_its_short_edges() {
     let path = scratch("growth").join("chamfer.toml");
     let outline = "outline = [[0, 0], [2, 0], [2, 1], [1.02, 1], [1, 1.02], [1, 2], [0, 2]]";

@@ -62,6 +62,7 @@ pub(crate) struct Local {
     pub lattice: NestedLattice,
     pub asked: Vec<f64>, // shape (n_nodes,), user's length unit
     pub clearance: LocalClearance,
+    pub may_miss_dips: bool,
 }
 
 /// Where interior nodes come from.
@@ -234,6 +235,11 @@ impl Cloud {
     /// True where the spacing varies, as asked by a [`crate::Grading`].
     pub fn is_graded(&self) -> bool {
         self.local.is_some()
+    }
+
+    /// True where dips of the function that a graded cloud follows may have been passed over; see [`crate::Spacing::may_miss_dips`].
+    pub fn may_miss_dips(&self) -> bool {
+        self.local.as_ref().is_some_and(|local| local.may_miss_dips)
     }
 
     /// The nested lattices that the interior nodes of a graded cloud come from; `None` for others.

@@ -60,7 +60,7 @@ pub(crate) fn generate_graded(
         return Err(CloudError::NoInterior { remedy });
     }
     let lattice = *spacing.lattice();
-    let local = Local { lattice, asked, clearance };
+    let local = Local { lattice, asked, clearance, may_miss_dips: spacing.may_miss_dips() };
     if params.irregularity > 0.0 {
         let by = local.displacements(n_boundary, params.irregularity);
         let clearance_of = |k: usize| local.clearance_of(n_boundary + k);

@@ -1,7 +1,7 @@
 //! How the spacing of a cloud shall vary: what is asked for, before it is looked at.
 
 use crate::error::CloudError;
-use nmt_geom::{EdgeId, Point};
+use nmt_geom::{Bbox, EdgeId, Point};
 use std::fmt;
 use std::sync::Arc;
 
@@ -23,17 +23,36 @@ pub const MIN_SPACING_REL: f64 = 1.0e-7;
 
 /// A spacing as a function of the place, user's length unit.
 #[derive(Clone)]
-pub struct SpacingFunction(Arc<dyn Fn(Point) -> f64 + Send + Sync>);
+pub struct SpacingFunction {
+    at: Arc<dyn Fn(Point) -> f64 + Send + Sync>,
+    lower_bound: Option<Arc<LowerBound>>,
+}
+
+/// A number that a function is not less than anywhere in a rectangle; a sharper one is worth some time where it is less than
+/// the second argument.
+type LowerBound = dyn Fn(Bbox, f64) -> f64 + Send + Sync;
 
 impl SpacingFunction {
-    /// The function as it is.
+    /// The function as it is: what lies between the places where it is looked at, 64 cells across at least, is not seen.
     pub fn new(f: impl Fn(Point) -> f64 + Send + Sync + 'static) -> Self {
-        Self(Arc::new(f))
+        Self { at: Arc::new(f), lower_bound: None }
+    }
+
+    /// The same function with what is known of it between places, so that no dip is passed over, however narrow:
+    /// `bound(rectangle, enough)` is a number that it is not less than anywhere in the rectangle; where that is less than
+    /// `enough`, a sharper one is worth some time. The bounds must tend to the function where rectangles shrink.
+    pub fn with_lower_bound(self, bound: impl Fn(Bbox, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self { lower_bound: Some(Arc::new(bound)), ..self }
     }
 
     /// Its value, as it comes: it need not be a spacing.
     pub fn at(&self, p: Point) -> f64 {
-        (self.0)(p)
+        (self.at)(p)
+    }
+
+    /// What it is not less than in a rectangle, where that is known.
+    pub(crate) fn lower_bound(&self, rectangle: Bbox, enough: f64) -> Option<f64> {
+        self.lower_bound.as_ref().map(|bound| bound(rectangle, enough)).filter(|bound| !bound.is_nan())
     }
 }
 
@@ -46,7 +65,7 @@ impl fmt::Debug for SpacingFunction {
 impl PartialEq for SpacingFunction {
     /// True for clones of one function.
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        Arc::ptr_eq(&self.at, &other.at)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::generate::MAX_GRID_POINTS;
 use crate::nested::{Cell, NestedLattice};
 use crate::sources::Source;
 use crate::spacing::Asked;
-use nmt_geom::Point;
+use nmt_geom::{Bbox, Point};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// A function is looked at on at least this many cells across the envelope.
@@ -13,6 +13,9 @@ pub(crate) const CELLS_ACROSS: u32 = 64;
 
 /// A cell in which the function varies by more than this factor is looked at more closely.
 const MUCH: f64 = 1.5;
+
+/// Cells that are looked into for no other reason than that the function may have a dip there, at most: half a second's work.
+const MOST_SUSPECTED: usize = 1 << 17;
 
 /// A slope above the growth by no more than this fraction is rounding.
 const SLOPE_SLACK: f64 = 1.0e-6;
@@ -159,16 +162,23 @@ pub(crate) fn steep_places(
     lattice: &NestedLattice,
     growth: f64,
 ) -> Result<Steep, CloudError> {
-    let mut search = Search { function, look, lattice, growth, found: Vec::new(), least: f64::INFINITY };
-    search.visit(lattice.root(), None)?;
-    let Search { mut found, least, .. } = search;
-    let key = |source: &Source| (source.ends[0][1], source.ends[0][0]);
+    let search =
+        |suspects| Search { function, look, lattice, growth, found: Vec::new(), least: f64::INFINITY, suspects };
+    let mut seen = search(Some(0));
+    seen.visit(lattice.root(), None)?;
+    let may_miss_dips = seen.has_too_many_suspects();
+    if may_miss_dips {
+        // Refined in one corner and not in the other the cloud would follow neither the function nor what is seen of it.
+        seen = search(None);
+        seen.visit(lattice.root(), None)?;
+    }
+    let Search { mut found, least, .. } = seen;
     found.sort_unstable_by(|a, b| {
-        let ((ay, ax), (by, bx)) = (key(a), key(b));
-        ay.total_cmp(&by).then(ax.total_cmp(&bx))
+        let [(ay, ax), (by, bx)] = [a, b].map(|source| (source.ends[0][1], source.ends[0][0]));
+        ay.total_cmp(&by).then(ax.total_cmp(&bx)).then(a.size.total_cmp(&b.size))
     });
     found.dedup_by_key(|source| source.ends[0]);
-    Ok(Steep { sources: found, least })
+    Ok(Steep { sources: found, least, may_miss_dips })
 }
 
 /// Where a function is steep.
@@ -177,6 +187,8 @@ pub(crate) struct Steep {
     pub sources: Vec<Source>,
     /// The least value of the function that was met.
     pub least: f64,
+    /// Whether there were more cells with a dip by the function's lower bound than could be looked into.
+    pub may_miss_dips: bool,
 }
 
 struct Search<'a> {
@@ -186,11 +198,27 @@ struct Search<'a> {
     growth: f64,
     found: Vec<Source>,
     least: f64,
+    suspects: Option<usize>, // cells looked into for their lower bound alone; `None` where it is not asked
 }
 
 impl Search<'_> {
+    /// How small the function may be in a cell whose nine values are `least` at least: that, or much less by its lower bound.
+    fn depth_of_dip(&self, cell: Cell, least: f64) -> f64 {
+        if self.suspects.is_none() {
+            return least;
+        }
+        let (min, max) =
+            (self.lattice.corner(cell), self.lattice.corner(Cell { i: cell.i + 1, j: cell.j + 1, ..cell }));
+        let bound = self.function.lower_bound(Bbox { min, max }, least / MUCH);
+        bound.filter(|bound| bound * MUCH < least).unwrap_or(least)
+    }
+
+    fn has_too_many_suspects(&self) -> bool {
+        self.suspects.is_some_and(|n| n >= MOST_SUSPECTED)
+    }
+
     fn visit(&mut self, cell: Cell, corners: Option<[f64; 4]>) -> Result<(), CloudError> {
-        if is_beyond(self.lattice, cell) {
+        if is_beyond(self.lattice, cell) || self.has_too_many_suspects() {
             return Ok(());
         }
         if cell.depth < self.look.depth {
@@ -212,17 +240,25 @@ impl Search<'_> {
         let is_steep = |pair: &&[(usize, usize); 2]| {
             (value(pair[0]) - value(pair[1])).abs() > self.growth * length(**pair) * (1.0 + SLOPE_SLACK)
         };
-        let is_fine = 2.0 * half[0].max(half[1]) <= least;
+        let is_finer_than = |h: f64| 2.0 * half[0].max(half[1]) <= h;
         let mut steep = NEIGHBOURS.iter().filter(is_steep).peekable();
+        let is_uneven = steep.peek().is_some() || is_varied;
+        // Cells that are uneven and not fine are looked into in any case.
+        let dip = if is_finer_than(least) || !is_uneven { self.depth_of_dip(cell, least) } else { least };
+        let (is_fine, has_dip) = (is_finer_than(dip), dip < least);
         // What a formula is beyond the section may be as small as it likes.
-        let matters = steep.peek().is_some() || is_varied || least < self.least;
+        let matters = is_uneven || has_dip || least < self.least;
         if matters {
             let centre = place(self.lattice, cell, 1, 1);
             if self.function.is_outside(centre, half[0].hypot(half[1])) {
                 return Ok(());
             }
         }
-        self.least = self.least.min(least);
+        self.least = self.least.min(if is_fine { dip } else { least });
+        if is_fine && has_dip {
+            // Narrower than the spacing that it asks for: nothing but the bound tells of it.
+            self.found.push(Source::point(place(self.lattice, cell, 1, 1), dip, self.growth));
+        }
         if steep.peek().is_some() && is_fine {
             for &[a, b] in steep {
                 let (row, column) = if value(a) < value(b) { a } else { b };
@@ -232,7 +268,8 @@ impl Search<'_> {
             if self.found.len() > MOST_SOURCES {
                 return Err(CloudError::TooFine { spacing: self.least, limit: MAX_GRID_POINTS, place: "" });
             }
-        } else if !is_fine && (steep.peek().is_some() || is_varied) {
+        } else if !is_fine && (is_uneven || has_dip) {
+            self.suspects = self.suspects.map(|n| n + usize::from(has_dip));
             for (k, child) in cell.children().into_iter().enumerate() {
                 self.visit(child, Some(corners_of_child(&values, k)))?;
             }

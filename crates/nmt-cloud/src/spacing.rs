@@ -7,7 +7,7 @@ use crate::nested::NestedLattice;
 use crate::section::{CloudParams, GivenNode, Section};
 use crate::sources::{Source, SourceTree};
 use nmt_curve::{ArcTable, CLOSED_NODES_LEAST, CURVED_NODES_LEAST, Curve, OutlineEdge};
-use nmt_geom::{EdgeId, Location, Locator, Point};
+use nmt_geom::{Bbox, EdgeId, Location, Locator, Point};
 
 /// The chords that a curved edge is replaced by leave it by at most this fraction of the spacing along it.
 const CHORD_REL: f64 = 0.02;
@@ -18,7 +18,7 @@ const SECTION_CHORD_REL: f64 = 1.0e-6;
 /// h(x, y): the least of all that a [`Grading`] and the section ask for, and at most the uniform spacing.
 ///
 /// |∇h| is at most the largest growth, up to the resolution at which a function is looked at: a grid of 64 cells across at
-/// least, and finer wherever the function varies much or asks for less.
+/// least, and finer wherever the function varies much or asks for less, or may do so by its lower bound.
 #[derive(Clone, Debug)]
 pub struct Spacing {
     function: Option<(Asked, FirstLook)>, // and what has been seen of it
@@ -27,6 +27,7 @@ pub struct Spacing {
     most: f64,
     least: f64,
     finest: f64,
+    may_miss_dips: bool,
 }
 
 /// A function that is asked for a spacing.
@@ -53,6 +54,11 @@ impl Asked {
             Location::Outside => Ok(self.most),
             Location::Inside | Location::OnBoundary => Err(CloudError::NotASpacing { at: p, value }),
         }
+    }
+
+    /// What the function is not less than in a rectangle, where that is known; within the bounds.
+    pub fn lower_bound(&self, rectangle: Bbox, enough: f64) -> Option<f64> {
+        self.function.lower_bound(rectangle, enough).map(|bound| bound.clamp(self.least, self.most))
     }
 
     /// Whether what the function is within `radius` of `p` concerns nobody: the section is not there.
@@ -109,16 +115,16 @@ impl Spacing {
             });
             Asked { function, section: Locator::new(sides), chord: SECTION_CHORD_REL * size, most, least }
         });
-        let mut finest = most;
+        let (mut finest, mut may_miss_dips) = (most, false);
         let looked_at = |function| FirstLook::new(&function, &lattice).map(|look| (function, look));
         let function = function.map(looked_at).transpose()?;
         if let Some((function, look)) = &function {
             let steep = steep_places(function, look, &lattice, grading.growth.min(STEEPEST))?;
             found.extend(steep.sources);
-            finest = steep.least;
+            (finest, may_miss_dips) = (steep.least, steep.may_miss_dips);
         }
         let finest = found.iter().map(|source| source.size).fold(finest, f64::min);
-        Ok(Self { function, sources: SourceTree::new(found), lattice, most, least, finest })
+        Ok(Self { function, sources: SourceTree::new(found), lattice, most, least, finest, may_miss_dips })
     }
 
     /// h at `p`, user's length unit.
@@ -146,6 +152,12 @@ impl Spacing {
     /// The least spacing asked for, as far as a function has been looked at.
     pub fn finest(&self) -> f64 {
         self.finest
+    }
+
+    /// True where a function with a lower bound has so many places at which that is far below the function that they could not
+    /// all be looked into: dips may have been passed over.
+    pub fn may_miss_dips(&self) -> bool {
+        self.may_miss_dips
     }
 
     /// The lattices that the interior nodes come from.

@@ -5,6 +5,7 @@ mod error;
 mod eval;
 mod names;
 mod parse;
+mod range;
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,6 +15,7 @@ pub use eval::Jet;
 
 use compile::Program;
 use eval::Scalar;
+use range::{Range, SLOPED, Sloped};
 
 /// Longest formula accepted, in bytes.
 ///
@@ -70,6 +72,35 @@ impl Expression {
     /// The value, where the variables have `values`, in the order in which they were named; NaN where one is not given.
     pub fn eval(&self, values: &[f64]) -> f64 {
         self.program.run(|variable| values.get(variable).copied().unwrap_or(f64::NAN))
+    }
+
+    /// A number that no value is less than while each variable lies within its `limits`, in the order in which they were named;
+    /// −∞ where none is known, NaN where the formula has no value there at all.
+    ///
+    /// Rounding is not taken into account. Where the bound is less than `enough`, a sharper one is sought, by the slopes along the
+    /// first two variables (mean value form): its distance from the least value falls with the square of the limits' width.
+    ///
+    /// ```
+    /// # use nmt_curve::Expression;
+    /// let f = Expression::parse("x^2 - 2*x + y", &["x", "y"])?;
+    /// let limits = [[1.0, 1.1], [0.0, 0.1]]; // the least value is −1, at (1, 0)
+    /// assert!((f.lower_bound(&limits, -2.0) + 1.2).abs() < 1e-12);
+    /// assert!((f.lower_bound(&limits, -1.0) + 1.0075).abs() < 1e-12);
+    /// # Ok::<(), nmt_curve::ExpressionError>(())
+    /// ```
+    pub fn lower_bound(&self, limits: &[[f64; 2]], enough: f64) -> f64 {
+        let range = |variable: usize| limits.get(variable).map_or(Range::new([f64::NAN; 2]), |of| Range::new(*of));
+        let plain = self.program.run(range).lo;
+        if plain >= enough || limits.len() > SLOPED {
+            return plain;
+        }
+        let Sloped { value, slopes } = self.program.run(|variable| Sloped::variable(variable, range(variable)));
+        let middle = |[lo, hi]: [f64; 2]| lo + 0.5 * (hi - lo);
+        let at_middle = self.program.run(|variable| limits.get(variable).map_or(f64::NAN, |of| middle(*of)));
+        let ways = limits.iter().zip(slopes).map(|([lo, hi], slope)| 0.5 * (hi - lo) * slope.steepest());
+        let by_slopes = at_middle - ways.sum::<f64>();
+        // NaN, where the formula is undefined somewhere, is no bound.
+        value.lo.max(by_slopes)
     }
 
     /// The value of a formula of one variable at `x`.

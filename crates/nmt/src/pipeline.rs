@@ -17,6 +17,7 @@ use crate::problem::GradingSettings;
 use crate::problem::{MeshMethod, MeshSettings, Problem, Subdomain};
 use crate::report::place;
 use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Refinement, Section, SpacingFunction, generate};
+use nmt_geom::Bbox;
 use nmt_merge::{EdgeNodes, Planned, conform};
 use nmt_mfdm::{Formulation, MfdmError, SolveParams, TorsionProblem, TorsionSolution};
 use nmt_tri::{Mesh, MeshCensus, Quality, quality, smooth};
@@ -254,8 +255,9 @@ pub fn cloud_params(problem: &Problem, subdomain: &Subdomain) -> CloudParams {
 /// How the spacing varies, as the cloud takes it.
 fn grading(settings: &GradingSettings) -> Grading {
     let function = settings.density.as_ref().map(|density| {
-        let formula = density.expression.clone();
-        SpacingFunction::new(move |p| formula.eval(&p))
+        let (formula, same) = (density.expression.clone(), density.expression.clone());
+        let bound = move |Bbox { min, max }, enough| same.lower_bound(&[[min[0], max[0]], [min[1], max[1]]], enough);
+        SpacingFunction::new(move |p| formula.eval(&p)).with_lower_bound(bound)
     });
     Grading { function, growth: settings.growth, refinements: settings.refine.clone() }
 }

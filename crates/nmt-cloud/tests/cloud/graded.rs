@@ -1,10 +1,12 @@
 //! Clouds whose spacing varies: gradual, near to what is asked for, clear of the boundary, symmetric, the same everywhere.
 
 use crate::sections::{Shape, any_density, any_shape, cloud, params};
-use nmt_cloud::{Cloud, CloudError, CloudParams, Grading, Nearest, Scratch, Section, Spacing, generate, quality};
+use nmt_cloud::{
+    Cloud, CloudError, CloudParams, Grading, Nearest, Scratch, Section, Spacing, SpacingFunction, generate, quality,
+};
 use nmt_curve::Outline;
 use nmt_geom::point::distance;
-use nmt_geom::{EdgeId, Location, NodeId, Point};
+use nmt_geom::{Bbox, EdgeId, Location, NodeId, Point};
 use proptest::prelude::*;
 
 /// A grading with a function, points and an edge, any of them absent.
@@ -162,6 +164,47 @@ fn a_jump_of_the_function_is_made_gradual_from_its_lower_side() {
     }
     let cloud = cloud(&square, &params);
     assert!(worst_ratio(&cloud, 0..cloud.n_nodes()) <= 2.0 + 1e-9);
+}
+
+/// 0.05 but for a dip to 0.002 about `at`, `width` wide, and its least value in a rectangle.
+fn dip(at: Point, width: f64) -> SpacingFunction {
+    let f = move |r: f64| 0.05 - 0.048 * (-(r / width) * (r / width)).exp();
+    let from = move |Bbox { min, max }: Bbox| distance(at, [0, 1].map(|d| at[d].clamp(min[d], max[d])));
+    SpacingFunction::new(move |p| f(distance(p, at))).with_lower_bound(move |rectangle, _| f(from(rectangle)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    #[test]
+    fn no_dip_is_too_narrow_where_a_lower_bound_tells_of_it(
+        at in prop::array::uniform2(0.05..0.95f64), exponent in -6.0..-2.0f64,
+    ) {
+        let square = Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0]));
+        let width = 10f64.powf(exponent);
+        let function = dip(at, width);
+        let grading = Grading { function: Some(function), ..Grading::default() };
+        let params = graded(grading, [21, 21], 0.0);
+        let spacing = Spacing::new(&square, &params).unwrap();
+        prop_assert!(!spacing.may_miss_dips());
+        for (way, most) in [(0.0, 0.002), (0.01, 0.005), (0.1, 0.032)] {
+            // As if it were a point of refinement, up to the resolution, the spacing there.
+            let h = spacing.at([at[0] + way, at[1]]).unwrap();
+            prop_assert!(h <= 1.6 * most, "{} at {} from a dip {} wide", h, way, width);
+        }
+        let cloud = cloud(&square, &params);
+        let near = cloud.xy().iter().map(|p| distance(*p, at)).fold(f64::INFINITY, f64::min);
+        prop_assert!(near < 0.0035, "{}", near);
+    }
+}
+
+#[test]
+fn bounds_that_promise_dips_everywhere_end_the_search_and_say_so() {
+    let square = Section::solid(Outline::rectangle([0.0, 0.0], [1.0, 1.0]));
+    let function = SpacingFunction::new(|_| 0.05).with_lower_bound(|_, _| 1e-6);
+    let grading = Grading { function: Some(function), ..Grading::default() };
+    let cloud = cloud(&square, &graded(grading, [21, 21], 0.0));
+    assert!(cloud.may_miss_dips());
+    assert_eq!(cloud.n_nodes(), 441);
 }
 
 #[test]

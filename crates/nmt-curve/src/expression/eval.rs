@@ -46,7 +46,7 @@ impl Jet {
 }
 
 /// `a·b`, where a vanishing factor wins over an infinite one: the constant inside `sqrt(0*x)` has no slope.
-fn product(a: f64, b: f64) -> f64 {
+pub(super) fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
