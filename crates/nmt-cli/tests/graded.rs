@@ -195,6 +195,7 @@ fn dips_of_a_density_are_found_however_narrow_they_are() {
     assert!((0.95..1.1).contains(&(crack as f64 / wide as f64)), "{crack} {wide}");
     let (comb, .., warnings) = report("0.1 - 0.0999*exp(-(1000*sin(3.1e4*x + 0.7))^2)");
     assert!(comb < 2 * peak && warnings.contains("may have been passed over"), "{comb} {warnings}");
+    assert!(!warnings.contains("does nothing"), "what was not looked into is not known: {warnings}");
 }
 
 #[test]

@@ -126,7 +126,7 @@ struct Star {
     start: usize, // its first node; its rows begin where so many rows' worth of nodes do
     radius: f64,  // user's length unit
     size: u32,    // nodes in it
-    marks: Marks, // of its nodes, where it is of the usual size and has the rows of all derivatives; none otherwise
+    marks: Marks, // of its nodes, where it is of the size of most and has the rows of all derivatives; none otherwise
 }
 
 /// [`StarOutcome`] in 16 bytes.

@@ -24,18 +24,17 @@ pub(super) fn without_effect(name: &str, asked: &GradingSettings, cloud: &Cloud,
     if let Some(density) = &asked.density {
         let nodes = cloud.xy().iter();
         let least = nodes.map(|p| density.expression.eval(p)).fold(f64::INFINITY, f64::min);
-        // A narrow dip has effects beside it, though no node need lie in it.
-        if least >= most && (!asked.refine.is_empty() || is_even()) {
-            warnings.push(format!(
-                "subdomain \"{name}\": `density` does nothing: it is {} or more, and the uniform spacing of `nodes` is {uniform} \
-                 already; let it ask for less somewhere, or leave it out",
-                number(least)
-            ));
-        }
         if cloud.may_miss_dips() {
             warnings.push(format!(
                 "subdomain \"{name}\": `density` varies too much on too small a scale to be looked into everywhere: places where it is \
                  much smaller than around may have been passed over; smooth it, or add `refine` where they are"
+            ));
+        } else if least >= most && (!asked.refine.is_empty() || is_even()) {
+            // A narrow dip has effects beside it, though no node need lie in it.
+            warnings.push(format!(
+                "subdomain \"{name}\": `density` does nothing: it is {} or more, and the uniform spacing of `nodes` is {uniform} \
+                 already; let it ask for less somewhere, or leave it out",
+                number(least)
             ));
         }
     }
