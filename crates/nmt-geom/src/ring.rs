@@ -1,6 +1,8 @@
 //! A closed polygon, given by its corners in order; the last joins the first.
 
+use crate::bbox::Bbox;
 use crate::point::{Point, cross, distance, sub};
+use crate::segment::distance_to;
 
 /// Signed area: positive where the corners run counter-clockwise; square of the user's length unit.
 pub fn signed_area(ring: &[Point]) -> f64 {
@@ -36,9 +38,46 @@ pub fn sides(ring: &[Point]) -> impl Iterator<Item = (Point, Point)> {
     (0..n).map(move |k| (ring[k], ring[(k + 1) % n]))
 }
 
+/// Lines across a ring on which [`inner_point`] looks for its place, each way.
+const LINES: usize = 16;
+
+/// A point inside, about as far from the sides as any; `None` where nothing is enclosed. O(sides), some hundred times.
+///
+/// Of the middles of what lies inside on 16 lines along each axis, the one that is farthest from the sides.
+pub fn inner_point(ring: &[Point]) -> Option<Point> {
+    let envelope = Bbox::of(ring.iter().copied());
+    let middles = [0, 1].into_iter().flat_map(|axis| {
+        let (low, extent) = (envelope.min[axis], envelope.max[axis] - envelope.min[axis]);
+        (0..LINES).flat_map(move |k| {
+            let at = low + extent * (k as f64 + 0.5) / LINES as f64;
+            let mut crossings: Vec<f64> = sides(ring).filter_map(|side| crossing(side, axis, at)).collect();
+            crossings.sort_by(f64::total_cmp);
+            let (inside, _) = crossings.as_chunks::<2>();
+            let middle = |[a, b]: &[f64; 2]| if axis == 0 { [at, 0.5 * (a + b)] } else { [0.5 * (a + b), at] };
+            inside.iter().map(middle).collect::<Vec<Point>>()
+        })
+    });
+    let depth = |p: Point| sides(ring).map(|(a, b)| distance_to(p, a, b)).fold(f64::INFINITY, f64::min);
+    let deeper = |best: (f64, Option<Point>), p: Point| {
+        let own = depth(p);
+        if own > best.0 { (own, Some(p)) } else { best }
+    };
+    middles.fold((0.0, None), deeper).1
+}
+
+/// Where a side crosses the line of one coordinate: its other one.
+fn crossing((a, b): (Point, Point), axis: usize, at: f64) -> Option<f64> {
+    let other = 1 - axis;
+    let share = (at - a[axis]) / (b[axis] - a[axis]);
+    ((a[axis] <= at) != (b[axis] <= at)).then(|| a[other] + share * (b[other] - a[other]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::locate::{Location, Locator};
+    use proptest::prelude::*;
+    use std::f64::consts::{SQRT_2, TAU};
 
     const L: [Point; 6] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
 
@@ -55,5 +94,37 @@ mod tests {
         let reversed: Vec<_> = L.iter().rev().copied().collect();
         assert_eq!(signed_area(&reversed), -3.0);
         assert!(distance(centroid(&reversed), centroid(&L)) < 1e-15); // rounding
+    }
+
+    #[test]
+    fn inner_points_are_far_from_the_sides() {
+        let depth = |ring: &[Point], p| sides(ring).map(|(a, b)| distance_to(p, a, b)).fold(f64::INFINITY, f64::min);
+        let slanted = [[0.0, 0.0], [1.0, 1.0], [0.999, 1.001], [-0.001, 0.001]];
+        let triangle = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]];
+        // Radii of the largest circles inside.
+        let rings: [(&[Point], f64); 3] =
+            [(&L, 2.0 - SQRT_2), (&slanted, 0.000_5 * SQRT_2), (&triangle, 1.5 - 5f64.sqrt() / 2.0)];
+        for (ring, deepest) in rings {
+            let p = inner_point(ring).expect("a point");
+            assert!(depth(ring, p) > 0.8 * deepest, "{p:?}: {} of {deepest}", depth(ring, p));
+        }
+    }
+
+    #[test]
+    fn nothing_lies_within_a_ring_without_an_area() {
+        assert_eq!(inner_point(&[]), None);
+        assert_eq!(inner_point(&[[0.0, 0.0], [1.0, 2.0]]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn inner_points_lie_inside_whatever_the_shape(radii in prop::collection::vec(0.01..1.0f64, 3..40)) {
+            // Star-shaped about the origin.
+            let angle = |k: usize| TAU * k as f64 / radii.len() as f64;
+            let ring: Vec<Point> = (0..radii.len()).map(|k| [radii[k] * angle(k).cos(), radii[k] * angle(k).sin()]).collect();
+            let p = inner_point(&ring).expect("a point");
+            let locator = Locator::new(sides(&ring).map(|(a, b)| [a, b]));
+            prop_assert_eq!(locator.locate(p), Location::Inside);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! How far the results may be off: bounds of J from the stress function and the warping function together.
 //!
 //! For every v that vanishes on the boundary 4∫v − ∫|∇v|² ≤ J, and for every σ with ∇·σ = −2 and the circulation 2A around
-//! each hole J ≤ ∫|σ|²; the difference of the two is ∫|∇v − σ|² (Prager and Synge, Quart. Appl. Math. 5 (1947) 241–269).
+//! each hole (of any circulation where F = 0 on the hole) J ≤ ∫|σ|²; the difference of the two is ∫|∇v − σ|² (Prager and Synge, Quart. Appl. Math. 5 (1947) 241–269).
 //! Here v is the recovered stress function, for Gθ = 1, and σ that of the warping function ([`Warping`]).
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.
@@ -21,7 +21,7 @@ use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::true_edges::{ALONG, Piece, Sample, visit_pieces};
-use crate::warping::{NodalWarping, Warping, elements_params, warping_params};
+use crate::warping::{NodalWarping, StressFrame, Warping, elements_params, warping_params};
 use nmt_cloud::Section;
 use nmt_geom::point::{dot, sub};
 use nmt_geom::{LoopId, NodeId, Point, TriId};
@@ -61,7 +61,8 @@ impl ErrorEstimate {
 /// Estimates the errors of `solution`, which is that of `problem` on `mesh` with `params`; `section` is what the mesh's
 /// cloud was generated from. It costs about as much as the solution; [`crate::solve_estimated`] takes half of that.
 ///
-/// `None` where a hole has F = 0 ([`crate::HoleCondition::Zero`]): then 2∫F is no torsion constant that anything bounds.
+/// Where holes have F = 0 ([`crate::HoleCondition::Zero`]), J stands for 2∫F/(Gθ), which is no torsion constant but bounded alike:
+/// σ then need not have any circulation.
 ///
 /// # Errors
 /// As [`crate::solve`]; [`MfdmError::Curve`] where an edge has no length.
@@ -77,7 +78,7 @@ impl ErrorEstimate {
 /// let mesh = Mesh::constrained(cloud)?;
 /// let (problem, params) = (TorsionProblem::default(), SolveParams::default());
 /// let solution = solve(&problem, &mesh, &params)?;
-/// let estimate = estimate(&problem, &mesh, &square, &params, &solution)?.ok_or("no hole has F = 0 here")?;
+/// let estimate = estimate(&problem, &mesh, &square, &params, &solution)?;
 /// let [low, high] = estimate.j_bounds;
 /// let exact = exact::rectangle(1.0, 1.0).j;
 /// assert!(low < exact && exact < high && high - low < 1e-4 * exact);
@@ -90,7 +91,7 @@ pub fn estimate(
     section: &Section,
     params: &SolveParams,
     solution: &TorsionSolution,
-) -> Result<Option<ErrorEstimate>, MfdmError> {
+) -> Result<ErrorEstimate, MfdmError> {
     estimate_observed(problem, mesh, section, params, solution, &mut |_| {})
 }
 
@@ -105,12 +106,9 @@ pub fn estimate_observed(
     params: &SolveParams,
     solution: &TorsionSolution,
     observer: &mut dyn FnMut(Event),
-) -> Result<Option<ErrorEstimate>, MfdmError> {
-    if !problem.has_torsion_constant(mesh.cloud().boundary().n_loops() - 1) {
-        return Ok(None);
-    }
+) -> Result<ErrorEstimate, MfdmError> {
     let case = Case { problem, mesh, section, params, solution };
-    case.estimate(&case.warping(&warping_params(params), observer)?, observer).map(Some)
+    case.estimate(&case.warping(&warping_params(params), observer)?, observer)
 }
 
 /// A torsion problem and its solution.
@@ -147,7 +145,8 @@ impl Case<'_> {
     }
 
     fn warping(&self, params: &SolveParams, observer: &mut dyn FnMut(Event)) -> Result<Warping, MfdmError> {
-        let nodal = NodalWarping::solve(self.mesh, self.section, params, None, observer)?;
+        let frame = StressFrame::of(self.mesh, self.section, self.solution)?;
+        let nodal = NodalWarping::solve(self.mesh, self.section, frame, params, None, observer)?;
         let [field] = recover(self.mesh, params, [&nodal.values], observer)?;
         Ok(nodal.with_field(field))
     }

@@ -48,6 +48,7 @@ mod mend;
 mod mwls;
 mod one_star;
 mod operator;
+mod outflow;
 mod parallel;
 mod params;
 mod patched;

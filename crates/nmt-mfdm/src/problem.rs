@@ -144,7 +144,7 @@ impl TorsionProblem {
     }
 
     /// Whether 2∫F + 2Σc_kA_k is the torsion constant of a section of so many holes: not where F = 0 on them
-    /// ([`HoleCondition::Zero`]), and nothing bounds it then.
+    /// ([`HoleCondition::Zero`]).
     pub fn has_torsion_constant(&self, n_holes: usize) -> bool {
         n_holes == 0 || self.holes == HoleCondition::Circulation
     }

@@ -4,7 +4,7 @@ use crate::blend::NodalPolynomials;
 use crate::boundary_value::{Discrete, NodalSolution, nodal_solution, recover, solve_discrete};
 use crate::circulation::hole_area;
 use crate::error::MfdmError;
-use crate::estimate::{Case, ErrorEstimate};
+use crate::estimate::{Case, ErrorEstimate, estimate_observed};
 use crate::flux::Fluxes;
 use crate::params::SolveParams;
 use crate::post::{extremes, torque};
@@ -13,7 +13,7 @@ use crate::solution::{HoleResult, TorsionSolution};
 use crate::solver::TARGET;
 use crate::source::Source;
 use crate::system::Roles;
-use crate::warping::{NodalWarping, warping_params};
+use crate::warping::{NodalWarping, StressFrame, warping_params};
 use nmt_cloud::Section;
 use nmt_tri::Mesh;
 
@@ -115,14 +115,26 @@ pub fn solve_estimated(
 ) -> Result<(TorsionSolution, Estimate), MfdmError> {
     problem.check()?;
     if !problem.has_torsion_constant(mesh.cloud().boundary().n_loops() - 1) {
-        return Ok((solve_observed(problem, mesh, params, observer)?, Ok(None)));
+        // What flows out of the holes must be known before the warping function is found.
+        let solution = solve_observed(problem, mesh, params, observer)?;
+        observer(Event::Begun(Stage::Estimate));
+        let estimate = estimate_observed(problem, mesh, section, params, &solution, &mut within(observer));
+        observer(Event::Ended(Stage::Estimate));
+        return Ok((solution, estimate));
     }
     let of_warping = warping_params(params);
     let is_same = of_warping == *params;
     let (nodal, operator) = nodal_solution(discrete(problem, mesh), params, None, observer)?;
     let operator = operator.filter(|_| is_same);
     observer(Event::Begun(Stage::Estimate));
-    let warping = NodalWarping::solve(mesh, section, &of_warping, operator, &mut within(observer));
+    let warping = NodalWarping::solve(
+        mesh,
+        section,
+        StressFrame::of_circulation(mesh),
+        &of_warping,
+        operator,
+        &mut within(observer),
+    );
     observer(Event::Ended(Stage::Estimate));
     observer(Event::Begun(Stage::Post));
     let (field, warping) = match warping {
@@ -143,13 +155,13 @@ pub fn solve_estimated(
     observer(Event::Ended(Stage::Post));
     observer(Event::Begun(Stage::Estimate));
     let case = Case { problem, mesh, section, params, solution: &solution };
-    let estimate = warping.and_then(|warping| case.estimate(&warping, &mut within(observer)).map(Some));
+    let estimate = warping.and_then(|warping| case.estimate(&warping, &mut within(observer)));
     observer(Event::Ended(Stage::Estimate));
     Ok((solution, estimate))
 }
 
-/// What becomes of an estimate: `None` where a hole has F = 0, an error where the warping function cannot be found.
-pub type Estimate = Result<Option<ErrorEstimate>, MfdmError>;
+/// What becomes of an estimate: an error where the warping function cannot be found.
+pub type Estimate = Result<ErrorEstimate, MfdmError>;
 
 /// The Prandtl problem for Gθ = 1.
 fn discrete<'a>(problem: &TorsionProblem, mesh: &'a Mesh) -> Discrete<'a> {

@@ -2,7 +2,7 @@
 //!
 //! σ = −(r − r₀) + rot w, with rot w = (∂w/∂y, −∂w/∂x), has the divergence −2 of ∇F (Gθ = 1) and the circulation
 //! 2A around every hole, whatever w is. The w for which ∇²w = 0 and ∂w/∂n = x n_y − y n_x makes it ∇F. Its problem has fluxes on
-//! all edges and no constants of holes.
+//! all edges and no constants of holes. Where F is 0 on a hole instead, σ has an [`Outflow`] q there, and ∂w/∂n also −q×n.
 
 use crate::blend::NodalPolynomials;
 use crate::boundary_value::{Discrete, nodal_solution};
@@ -10,9 +10,11 @@ use crate::error::MfdmError;
 use crate::flux::Fluxes;
 use crate::lanes::Lanes;
 use crate::operator::Operator;
+use crate::outflow::Outflow;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
 use crate::quadrature::RuleLanes;
+use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::source::Source;
@@ -31,9 +33,16 @@ const TARGET: f64 = 1.0e-7;
 pub(crate) struct NodalWarping {
     /// w, shape (n_nodes,).
     pub values: Vec<f64>,
+    frame: StressFrame,
+    linear: LinearSolve,
+}
+
+/// What stresses have beside the warping function.
+pub(crate) struct StressFrame {
     /// r₀.
     centre: Point,
-    linear: LinearSolve,
+    /// Of the holes on which F = 0.
+    outflows: Vec<Outflow>,
 }
 
 /// How the warping function is found beside the solution of torsion with `params`: in the variational form, blends and hats,
@@ -56,9 +65,39 @@ pub(crate) fn elements_params(params: &SolveParams) -> SolveParams {
     SolveParams { formulation: Formulation::Fem, ..warping_params(params) }
 }
 
+impl StressFrame {
+    /// That of a section whose holes have their circulation, which `mesh` meshes.
+    pub fn of_circulation(mesh: &Mesh) -> Self {
+        Self { centre: mesh.centroid(), outflows: Vec::new() }
+    }
+
+    /// That of a `solution`, with outflows of the holes on which F = 0.
+    ///
+    /// # Errors
+    /// [`MfdmError::Curve`] where an edge has no length.
+    pub fn of(mesh: &Mesh, section: &Section, solution: &TorsionSolution) -> Result<Self, MfdmError> {
+        let centre = mesh.centroid();
+        Ok(Self { centre, outflows: Outflow::of_holes(mesh, section, solution, centre)? })
+    }
+
+    /// σ at `p` where w = 0.
+    fn stress(&self, p: Point) -> Point {
+        let [x, y] = sub(p, self.centre);
+        let add = |[a, b]: Point, [c, d]: Point| [a + c, b + d];
+        self.outflows.iter().map(|outflow| outflow.field(p)).fold([-x, -y], add)
+    }
+
+    /// [`Self::stress`] at four places.
+    fn stress_at(&self, [x, y]: [Lanes; 2]) -> [Lanes; 2] {
+        let about = [Lanes::all(self.centre[0]) - x, Lanes::all(self.centre[1]) - y];
+        let add = |[a, b]: [Lanes; 2], [c, d]: [Lanes; 2]| [a + c, b + d];
+        self.outflows.iter().map(|outflow| outflow.field_at([x, y])).fold(about, add)
+    }
+}
+
 impl NodalWarping {
-    /// Solves for w with [`warping_params`] or [`elements_params`], its equations taken over from the `operator` of the stress function where
-    /// that has the same.
+    /// Solves for w in a `frame` with [`warping_params`] or [`elements_params`], its equations taken over from the `operator` of the
+    /// stress function where that has the same.
     ///
     /// w is known up to a constant: it is 0 at the first vertex.
     ///
@@ -67,11 +106,11 @@ impl NodalWarping {
     pub fn solve(
         mesh: &Mesh,
         section: &Section,
+        frame: StressFrame,
         params: &SolveParams,
         operator: Option<Operator>,
         observer: &mut dyn FnMut(Event),
     ) -> Result<Self, MfdmError> {
-        let centre = mesh.centroid();
         let mut fluxes = Fluxes::default();
         visit_pieces(
             mesh,
@@ -79,7 +118,7 @@ impl NodalWarping {
             |_| true,
             |_, piece, triangle| {
                 for (s, at, ds) in piece.along() {
-                    let q = cross(sub(at, centre), piece.normal(s));
+                    let q = -cross(frame.stress(at), piece.normal(s));
                     fluxes.edges.push(Sample { triangle, at, weight: ds * q });
                 }
                 fluxes.slivers.extend(piece.sliver(triangle));
@@ -92,20 +131,19 @@ impl NodalWarping {
         conditions[0] = NodeCondition::Value(0.0);
         let discrete = Discrete { mesh, conditions, source: Source::Constant(0.0), fluxes: &fluxes, target: TARGET };
         let (nodal, _) = nodal_solution(discrete, params, operator, observer)?;
-        Ok(Self { values: nodal.values, centre, linear: nodal.linear })
+        Ok(Self { values: nodal.values, frame, linear: nodal.linear })
     }
 
     /// Its stresses, from the field through its values.
     pub fn with_field(self, field: NodalPolynomials) -> Warping {
-        Warping { field, centre: self.centre, linear: self.linear }
+        Warping { field, frame: self.frame, linear: self.linear }
     }
 }
 
 /// The warping function of a section, made a field of stress.
 pub(crate) struct Warping {
     field: NodalPolynomials,
-    /// r₀.
-    centre: Point,
+    frame: StressFrame,
     /// How the linear system was solved.
     pub linear: LinearSolve,
 }
@@ -118,9 +156,12 @@ impl Warping {
 
     /// σ at the points of a rule on `triangle`.
     pub fn stresses_at(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [[Lanes; 2]; 2] {
-        let places = rule.places(mesh.corners(triangle).map(|corner| sub(corner, self.centre)));
+        let places = rule.places(mesh.corners(triangle));
         let w = self.field.slopes_at(mesh, triangle, rule);
-        from_fn(|k| [w[k].gradient[1] - places[k][0], -w[k].gradient[0] - places[k][1]])
+        from_fn(|k| {
+            let [x, y] = self.frame.stress_at(places[k]);
+            [x + w[k].gradient[1], y - w[k].gradient[0]]
+        })
     }
 
     /// σ at a node, of its own polynomial.
@@ -129,7 +170,7 @@ impl Warping {
     }
 
     fn with_rotation(&self, p: Point, [w_x, w_y]: [f64; 2]) -> [f64; 2] {
-        let [x, y] = sub(p, self.centre);
-        [w_y - x, -w_x - y]
+        let [x, y] = self.frame.stress(p);
+        [x + w_y, y - w_x]
     }
 }

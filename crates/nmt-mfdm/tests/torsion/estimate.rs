@@ -8,6 +8,7 @@ use nmt_mfdm::{
 };
 use nmt_tri::Mesh;
 use std::error::Error;
+use std::f64::consts::PI;
 
 /// A section whose J, and τ_max where it is finite, are known.
 struct Known {
@@ -64,7 +65,7 @@ fn case(
     let mesh = Mesh::constrained(generate(&known.section, &cloud)?)?;
     let problem = TorsionProblem::default();
     let solution = solve(&problem, &mesh, params)?;
-    let estimate = estimate(&problem, &mesh, &known.section, params, &solution)?.ok_or("no hole has F = 0")?;
+    let estimate = estimate(&problem, &mesh, &known.section, params, &solution)?;
     Ok(Case { solution, estimate })
 }
 
@@ -134,7 +135,7 @@ fn indicators_point_at_the_corner() -> Result<(), Box<dyn Error>> {
     let mesh = Mesh::constrained(generate(&l.section, &cloud)?)?;
     let (problem, params) = (TorsionProblem::default(), SolveParams::default());
     let solution = solve(&problem, &mesh, &params)?;
-    let estimate = estimate(&problem, &mesh, &l.section, &params, &solution)?.ok_or("no hole")?;
+    let estimate = estimate(&problem, &mesh, &l.section, &params, &solution)?;
     let [low, high] = estimate.j_bounds;
     assert!(estimate.indicators.len() == mesh.n_triangles());
     assert!((estimate.indicators.iter().sum::<f64>() / (high - low) - 1.0).abs() < 1e-12); // rounding
@@ -154,7 +155,7 @@ fn estimates_follow_the_load() -> Result<(), Box<dyn Error>> {
     let of = |load| -> Result<(TorsionSolution, ErrorEstimate), Box<dyn Error>> {
         let problem = TorsionProblem { shear_modulus: 3.0, load, ..TorsionProblem::default() };
         let solution = solve(&problem, &mesh, &params)?;
-        let estimate = estimate(&problem, &mesh, &section, &params, &solution)?.ok_or("no hole")?;
+        let estimate = estimate(&problem, &mesh, &section, &params, &solution)?;
         Ok((solution, estimate))
     };
     let (by_twist, of_twist) = of(Load::Twist(-2.0))?;
@@ -170,13 +171,45 @@ fn estimates_follow_the_load() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// F = 0 on holes too: what flows out of them is found from F, and the bounds hold as elsewhere.
 #[test]
-fn no_bounds_where_holes_have_no_circulation() -> Result<(), Box<dyn Error>> {
-    let tube = Section { contour: Outline::circle([0.0, 0.0], 1.0), holes: vec![Outline::circle([0.0, 0.0], 0.5)] };
-    let mesh = Mesh::constrained(generate(&tube, &CloudParams { nodes: [15, 15], ..CloudParams::default() })?)?;
-    let problem = TorsionProblem { holes: HoleCondition::Zero, ..TorsionProblem::default() };
-    let solution = solve(&problem, &mesh, &SolveParams::default())?;
-    assert_eq!(estimate(&problem, &mesh, &tube, &SolveParams::default(), &solution)?, None);
+fn bounds_where_holes_have_no_circulation() -> Result<(), Box<dyn Error>> {
+    let (a, b) = (0.5f64, 1.0f64);
+    let tube = Section { contour: Outline::circle([0.0, 0.0], b), holes: vec![Outline::circle([0.0, 0.0], a)] };
+    // F = (b² − r²)/2 + A·ln(r/b), 0 at both radii.
+    let log = (b * b - a * a) / (2.0 * (b / a).ln());
+    let by_log = a * a / 2.0 * (b / a).ln() - (b * b - a * a) / 4.0;
+    let j = 4.0 * PI * ((b * b - a * a).powi(2) / 8.0 + log * by_log);
+    // A slot, a hole that bends about a corner and a small round one: bounds from 68 042 and 29 044 graded nodes of orders 2
+    // and 4, 7e-9 and 4e-8 apart, agree.
+    let bent = vec![[1.2, 0.2], [1.8, 0.2], [1.8, 0.8], [1.6, 0.8], [1.6, 0.4], [1.2, 0.4]];
+    let plate = Section {
+        contour: Outline::rectangle([0.0, 0.0], [2.0, 1.0]),
+        holes: vec![
+            Outline::rectangle([0.15, 0.3], [0.25, 0.8]),
+            Outline::polygon(bent),
+            Outline::circle([0.7, 0.55], 0.1),
+        ],
+    };
+    for (section, exact) in [(&tube, j), (&plate, 0.102_913_263)] {
+        for formulation in [Formulation::Variational, Formulation::Local] {
+            for (nodes, irregularity) in [(25, 0.0), (25, 0.3), (61, 0.3)] {
+                let cloud = CloudParams { nodes: [nodes; 2], irregularity, seed: 2, ..CloudParams::default() };
+                let mesh = Mesh::constrained(generate(section, &cloud)?)?;
+                let problem = TorsionProblem { holes: HoleCondition::Zero, ..TorsionProblem::default() };
+                let params = SolveParams { formulation, ..SolveParams::default() };
+                let solution = solve(&problem, &mesh, &params)?;
+                let ErrorEstimate { j, j_bounds: [low, high], .. } =
+                    estimate(&problem, &mesh, section, &params, &solution)?;
+                let error = (solution.j - exact).abs();
+                let label = format!("{} {nodes} {irregularity}: {error:e}, {j:e}", formulation.name());
+                // From 1 to 11 measured.
+                assert!(error < j && j < 20.0 * error, "{label}");
+                let slack = 0.1 * (high - low);
+                assert!(low - slack < exact && exact < high + slack, "{label}, {low} … {high}");
+            }
+        }
+    }
     Ok(())
 }
 
@@ -239,7 +272,7 @@ fn what_boundary_nodes_do_not_see_is_in_the_estimate() -> Result<(), Box<dyn Err
             assert_eq!(hidden_bends(&section, mesh.cloud())?.is_empty(), is_seen, "{label}");
             let (problem, params) = (TorsionProblem::default(), SolveParams { formulation, ..SolveParams::default() });
             let solution = solve(&problem, &mesh, &params)?;
-            let estimate = estimate(&problem, &mesh, &section, &params, &solution)?.ok_or("no hole")?;
+            let estimate = estimate(&problem, &mesh, &section, &params, &solution)?;
             let error = (solution.j - rippled.j()).abs();
             assert!(error <= estimate.j, "{label}: J is off by {error:e}, not {:e}", estimate.j);
             let error = (solution.tau_max.value - rippled.tau_max()).abs();
@@ -264,7 +297,7 @@ fn a_cloud_too_coarse_for_polynomials_has_an_estimate_all_the_same() -> Result<(
         let mesh = Mesh::constrained(generate(&section, &CloudParams { nodes, ..CloudParams::default() })?)?;
         let (problem, params) = (TorsionProblem::default(), SolveParams::default());
         let solution = solve(&problem, &mesh, &params)?;
-        let estimate = estimate(&problem, &mesh, &section, &params, &solution)?.ok_or("circulation")?;
+        let estimate = estimate(&problem, &mesh, &section, &params, &solution)?;
         let ([low, high], error) = (estimate.j_bounds, (solution.j - exact).abs());
         // 0.6 % and 0.9 % off, told to be 1.1 % and 1.3 %; by polynomials alone 8.6 % and 68 %.
         assert!(low < exact && exact < high, "{low} to {high}");

@@ -2,9 +2,7 @@
 
 use super::{MeshPart, Observer, of_solution, torsion};
 use crate::problem::Problem;
-use nmt_mfdm::{
-    ErrorEstimate, HoleCondition, MfdmError, SolveParams, TorsionSolution, solve_estimated, solve_observed,
-};
+use nmt_mfdm::{ErrorEstimate, MfdmError, SolveParams, TorsionSolution, solve_estimated, solve_observed};
 
 /// How far a solution may be off.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +11,6 @@ pub enum Estimated {
     By(Box<ErrorEstimate>),
     /// Nobody asked: `estimate = false`.
     NotAsked,
-    /// F = 0 on a hole: 2∫F is no torsion constant there, and has no bounds.
-    NoTorsionConstant,
     /// The stars of the cloud carry F, but not the warping function.
     Failed(MfdmError),
 }
@@ -24,7 +20,7 @@ impl Estimated {
     pub fn made(&self) -> Option<&ErrorEstimate> {
         match self {
             Self::By(estimate) => Some(estimate),
-            Self::NotAsked | Self::NoTorsionConstant | Self::Failed(_) => None,
+            Self::NotAsked | Self::Failed(_) => None,
         }
     }
 
@@ -32,12 +28,6 @@ impl Estimated {
     pub fn refused(&self) -> Option<String> {
         match self {
             Self::By(_) | Self::NotAsked => None,
-            Self::NoTorsionConstant => {
-                let condition = HoleCondition::Zero.name();
-                Some(format!(
-                    "with F = 0 on holes (holes = \"{condition}\") 2∫F is no torsion constant, and has no bounds"
-                ))
-            }
             Self::Failed(error) => Some(format!("the warping function cannot be found on this cloud: {error}")),
         }
     }
@@ -60,8 +50,7 @@ pub(super) fn solve_part(
     let observer = &mut of_solution(k, observer);
     let (solution, estimate) = solve_estimated(&torsion, &part.mesh, &part.section, params, observer)?;
     let estimated = match estimate {
-        Ok(Some(estimate)) => Estimated::By(Box::new(estimate)),
-        Ok(None) => Estimated::NoTorsionConstant,
+        Ok(estimate) => Estimated::By(Box::new(estimate)),
         Err(error) => Estimated::Failed(error),
     };
     Ok((solution, estimated))

@@ -8,7 +8,7 @@ use super::schema::{Overrides, SolveSettings};
 use super::tree::{Reader, SOLVE_KEYS, Table, Value};
 use nmt_cloud::ClearanceUnit;
 use nmt_curve::Division;
-use nmt_mfdm::{Formulation, HoleCondition, Load};
+use nmt_mfdm::{Formulation, Load};
 use toml::de::{DeTable, DeValue};
 
 /// The table's name in messages.
@@ -306,11 +306,6 @@ impl SolveDraft {
                 "`tolerance` is given, and no error is estimated".into(),
                 "leave `estimate = false` (--no-estimate) out",
             );
-        }
-        if self.settings.holes == HoleCondition::Zero && subdomains.iter().any(|subdomain| !subdomain.holes.is_empty())
-        {
-            let message = "`tolerance` is given, and with F = 0 on holes there is no estimate of J";
-            refuse(message.into(), "leave holes = \"zero\" out, or the tolerance");
         }
         for subdomain in subdomains {
             let uniform = [

@@ -8,6 +8,7 @@ use crate::report::poisson::{ErrorReport, PoissonReport};
 use crate::report::solves::SolvesReport;
 use crate::report::stars::{StarsReport, VariationalReport};
 use crate::report::tolerance::{StepReport, ToleranceReport};
+use nmt_mfdm::HoleCondition;
 use std::fmt::Write as _;
 
 /// Width of the left column.
@@ -155,7 +156,9 @@ impl<U: Fn(i32) -> String> Text<U> {
             let label = format!("hole \"{}\"", hole.name);
             self.row(&label, format!("{}, F = {}, area {}{u2}", hole.condition, number(hole.f), number(hole.area)));
         }
-        self.row("J = T/(Gθ)", format!("{}{u4}, torsion constant", number(s.j)));
+        let is_zero = s.holes.iter().any(|hole| hole.condition == HoleCondition::Zero.name());
+        let meaning = if is_zero { "2∫F/(Gθ), for F = 0 on holes" } else { "torsion constant" };
+        self.row("J = T/(Gθ)", format!("{}{u4}, {meaning}", number(s.j)));
         if let Some(estimate) = &s.error_estimate {
             self.row("J by bounds", estimate.bounds(&u4));
             self.row("estimated errors", estimate.errors());
