@@ -17,7 +17,7 @@ pub(crate) struct Hat {
 
 impl Hat {
     /// Makes it that of `node`.
-    #[inline]
+    #[inline(always)]
     pub fn become_of(&mut self, node: NodeId, mesh: &Mesh, node_tris: &NodeTris) {
         let at = mesh.xy()[node.index()];
         self.elements.clear();
@@ -25,6 +25,7 @@ impl Hat {
         self.find_nexts();
     }
 
+    #[inline(always)]
     fn find_nexts(&mut self) {
         self.nexts.clear();
         for some in self.elements.chunks(AT_ONCE) {

@@ -74,6 +74,7 @@ mod system;
 mod system_maker;
 mod true_edges;
 mod variational;
+mod vectors;
 mod visibility;
 mod warping;
 mod weak;

@@ -28,6 +28,14 @@ impl<'a> Patched<'a> {
         self.matrix.row(i).entries().for_each(|(j, value)| to(j, value));
     }
 
+    /// Entries of a row, by column and value, that are as asked for.
+    #[inline]
+    pub fn n_entries(&self, i: usize, is_wanted: impl Fn(usize, f64) -> bool) -> usize {
+        let mut n = 0;
+        self.each_entry(i, |j, value| n += usize::from(is_wanted(j, value)));
+        n
+    }
+
     /// a_ij, or 0.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         match self.anew.get(&i) {

@@ -4,6 +4,7 @@ use crate::basis::{INVERSE, MAX_MONOMIALS, MAX_ORDER, row};
 use crate::blend::{NodalPolynomials, barycentric_gradients};
 use crate::gauss::Rule;
 use crate::lanes::{Lanes, WIDTH};
+use crate::vectors::widest;
 use nmt_geom::point::sub;
 use nmt_geom::{Point, TriId};
 use nmt_tri::Mesh;
@@ -49,27 +50,28 @@ pub(crate) struct AtFour {
 impl NodalPolynomials {
     /// Value and gradient at the points of a rule, as [`Self::slope`] has them.
     pub(crate) fn slopes_at(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [AtFour; FOURS] {
-        match self.blended_order() {
-            0 => self.of_order::<0, true>(mesh, triangle, rule),
-            1 => self.of_order::<1, true>(mesh, triangle, rule),
-            2 => self.of_order::<2, true>(mesh, triangle, rule),
-            3 => self.of_order::<3, true>(mesh, triangle, rule),
-            _ => self.of_order::<MAX_ORDER, true>(mesh, triangle, rule),
-        }
+        self.at_rule::<true>(mesh, triangle, rule)
     }
 
     /// As [`Self::slopes_at`], without gradients, in half the time.
     pub(crate) fn values_at(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [Lanes; FOURS] {
-        let fours = match self.blended_order() {
-            0 => self.of_order::<0, false>(mesh, triangle, rule),
-            1 => self.of_order::<1, false>(mesh, triangle, rule),
-            2 => self.of_order::<2, false>(mesh, triangle, rule),
-            3 => self.of_order::<3, false>(mesh, triangle, rule),
-            _ => self.of_order::<MAX_ORDER, false>(mesh, triangle, rule),
-        };
-        fours.map(|four| four.value)
+        self.at_rule::<false>(mesh, triangle, rule).map(|four| four.value)
     }
 
+    fn at_rule<const WITH_GRADIENT: bool>(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [AtFour; FOURS] {
+        widest(
+            #[inline(always)]
+            || match self.blended_order() {
+                0 => self.of_order::<0, WITH_GRADIENT>(mesh, triangle, rule),
+                1 => self.of_order::<1, WITH_GRADIENT>(mesh, triangle, rule),
+                2 => self.of_order::<2, WITH_GRADIENT>(mesh, triangle, rule),
+                3 => self.of_order::<3, WITH_GRADIENT>(mesh, triangle, rule),
+                _ => self.of_order::<MAX_ORDER, WITH_GRADIENT>(mesh, triangle, rule),
+            },
+        )
+    }
+
+    #[inline(always)]
     fn of_order<const ORDER: usize, const WITH_GRADIENT: bool>(
         &self,
         mesh: &Mesh,

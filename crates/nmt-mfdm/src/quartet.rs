@@ -7,6 +7,7 @@
 use crate::basis::{INVERSE, MAX_MONOMIALS, n_monomials, row};
 use crate::lanes::{Lanes, WIDTH};
 use crate::mwls::is_on_one_line;
+use crate::vectors::widest;
 use nmt_geom::point::sub;
 use nmt_geom::{NodeId, Point};
 
@@ -42,13 +43,18 @@ impl Quartet {
     /// Factorises the systems of four stars of `order` 1 to [`MAX_ORDER`]; `places` are those of the nodes.
     pub fn factorise(&mut self, places: &[Point], stars: [CentredStar; WIDTH], order: usize) {
         self.order = order;
-        self.load(places, stars);
-        match order {
-            1 => self.factorise_columns::<2>(stars),
-            2 => self.factorise_columns::<5>(stars),
-            3 => self.factorise_columns::<9>(stars),
-            _ => self.factorise_columns::<MAX_COLUMNS>(stars),
-        }
+        widest(
+            #[inline(always)]
+            || {
+                self.load(places, stars);
+                match order {
+                    1 => self.factorise_columns::<2>(stars),
+                    2 => self.factorise_columns::<5>(stars),
+                    3 => self.factorise_columns::<9>(stars),
+                    _ => self.factorise_columns::<MAX_COLUMNS>(stars),
+                }
+            },
+        );
     }
 
     /// Condition number of the system in a lane, as [`crate::Mwls::condition`]; NaN or ∞ where it is singular.
@@ -67,6 +73,7 @@ impl Quartet {
     }
 
     /// Offsets from the centres; the largest of them are the radii.
+    #[inline(always)]
     fn load(&mut self, places: &[Point], stars: [CentredStar; WIDTH]) {
         let n = stars.iter().map(|star| star.nodes.len()).max().map_or(0, |most| most.saturating_sub(1));
         self.n = n;
@@ -83,6 +90,7 @@ impl Quartet {
         self.radius = squares.fold(Lanes::default(), Lanes::larger).sqrt();
     }
 
+    #[inline(always)]
     fn factorise_columns<const C: usize>(&mut self, stars: [CentredStar; WIDTH]) {
         self.fill::<C>(stars);
         self.reflect_columns::<C>();
@@ -90,6 +98,7 @@ impl Quartet {
     }
 
     /// Weighted monomials in coordinates scaled by the radius.
+    #[inline(always)]
     fn fill<const C: usize>(&mut self, stars: [CentredStar; WIDTH]) {
         // All of it is overwritten.
         self.a.resize(C * self.n, Lanes::default());
@@ -120,6 +129,7 @@ impl Quartet {
     }
 
     /// A = QR.
+    #[inline(always)]
     fn reflect_columns<const C: usize>(&mut self) {
         let n = self.n;
         self.v.resize(C * n, Lanes::default());
@@ -141,6 +151,7 @@ impl Quartet {
     }
 
     /// R⁻¹ and the condition number: ‖R‖·‖R⁻¹‖ in the Frobenius norm, with columns of length 1.
+    #[inline(always)]
     fn invert<const C: usize>(&mut self) {
         self.inverse.resize(C * C, Lanes::default());
         let (r, _) = self.a.as_chunks::<C>();
@@ -174,34 +185,44 @@ impl Quartet {
 
     /// Computes the rows of all derivatives.
     pub fn rows(&mut self) {
-        match self.order {
-            1 => self.all_rows::<2>(),
-            2 => self.all_rows::<5>(),
-            3 => self.all_rows::<9>(),
-            _ => self.all_rows::<MAX_COLUMNS>(),
-        }
+        widest(
+            #[inline(always)]
+            || match self.order {
+                1 => self.all_rows::<2>(),
+                2 => self.all_rows::<5>(),
+                3 => self.all_rows::<9>(),
+                _ => self.all_rows::<MAX_COLUMNS>(),
+            },
+        );
     }
 
     /// Computes the row of s_x²·∂²/∂x² + s_y²·∂²/∂y² alone, with the squares of the stretches given; the order is at least 2.
     pub fn laplacian(&mut self, [x, y]: [f64; 2]) {
-        match self.order {
-            1 => {}
-            2 => self.laplacian_row::<5>(x, y),
-            3 => self.laplacian_row::<9>(x, y),
-            _ => self.laplacian_row::<MAX_COLUMNS>(x, y),
-        }
+        widest(
+            #[inline(always)]
+            || match self.order {
+                1 => {}
+                2 => self.laplacian_row::<5>(x, y),
+                3 => self.laplacian_row::<9>(x, y),
+                _ => self.laplacian_row::<MAX_COLUMNS>(x, y),
+            },
+        );
     }
 
     /// Computes the coefficients of the polynomials through `values`, one a node of the cloud.
     pub fn fit(&mut self, values: &[f64], stars: [CentredStar; WIDTH]) {
-        match self.order {
-            1 => self.fit_columns::<2>(values, stars),
-            2 => self.fit_columns::<5>(values, stars),
-            3 => self.fit_columns::<9>(values, stars),
-            _ => self.fit_columns::<MAX_COLUMNS>(values, stars),
-        }
+        widest(
+            #[inline(always)]
+            || match self.order {
+                1 => self.fit_columns::<2>(values, stars),
+                2 => self.fit_columns::<5>(values, stars),
+                3 => self.fit_columns::<9>(values, stars),
+                _ => self.fit_columns::<MAX_COLUMNS>(values, stars),
+            },
+        );
     }
 
+    #[inline(always)]
     fn all_rows<const C: usize>(&mut self) {
         self.start::<C>();
         let (inverse, _) = self.inverse.as_chunks::<C>();
@@ -212,6 +233,7 @@ impl Quartet {
         self.finish::<C, C>();
     }
 
+    #[inline(always)]
     fn laplacian_row<const C: usize>(&mut self, x: f64, y: f64) {
         self.start::<1>();
         let (inverse, _) = self.inverse.as_chunks::<C>();
@@ -225,12 +247,14 @@ impl Quartet {
     }
 
     /// Room for `M` rows of coefficients, all 0.
+    #[inline(always)]
     fn start<const M: usize>(&mut self) {
         self.rows.clear();
         self.rows.resize(M * self.n, Lanes::default());
     }
 
     /// From the R⁻ᵀc in `rows` the rows of the functionals c.
+    #[inline(always)]
     fn finish<const C: usize, const M: usize>(&mut self) {
         let n = self.n;
         let (rows, _) = self.rows.as_chunks_mut::<M>();
@@ -247,6 +271,7 @@ impl Quartet {
         self.own[..M].iter_mut().zip(sums).for_each(|(own, sum)| *own = -sum);
     }
 
+    #[inline(always)]
     fn fit_columns<const C: usize>(&mut self, values: &[f64], stars: [CentredStar; WIDTH]) {
         let n = self.n;
         self.start::<1>();

@@ -116,6 +116,11 @@ fn loose_nodes(rows: &Patched, firmness: impl Fn(usize) -> Firmness + Sync + Sen
             if firm.is_soft() {
                 loose.push(Loose { unknown: k, twin: None, energy: own_energy, lacking: (-own).max(0.0) });
             }
+            // Hardly any row has one; all are looked at without a branch.
+            let is_large = |j: usize, there: f64| 2.0 * there * there >= firm.own * firmness(j).own;
+            if rows.n_entries(k, is_large) <= usize::from(is_large(k, firm.own)) {
+                continue;
+            }
             rows.each_entry(k, |j, there| {
                 // The two rows may differ much, but two nodes could cancel only where the larger of the coefficients beside
                 // the diagonal is large: from its row the pair is seen. A negative coefficient of its own makes a node loose

@@ -7,6 +7,7 @@ use crate::parallel::{Pool, map_chunks};
 use crate::row_sum::RowSum;
 use crate::system::{Equation, LinearSystem};
 use crate::system_maker::SystemMaker;
+use crate::vectors::widest;
 use crate::weak::{Gathered, TestFunction, WeakForm};
 use nmt_geom::NodeId;
 use std::ops::Range;
@@ -111,8 +112,13 @@ impl EquationMaker<'_> {
     fn sum_up(&self, node: NodeId, room: &mut EquationRoom) -> Result<f64, MfdmError> {
         let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
         let EquationRoom { sum, gathered, hat } = room;
-        hat.become_of(node, mesh, node_tris);
-        self.weak.add(TestFunction::Hat(hat), gathered, sum);
+        widest(
+            #[inline(always)]
+            || {
+                hat.become_of(node, mesh, node_tris);
+                self.weak.add(TestFunction::Hat(hat), gathered, sum);
+            },
+        );
         source.with_hat(mesh, source_rule, fluxes, hat)
     }
 }

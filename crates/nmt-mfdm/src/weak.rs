@@ -160,6 +160,7 @@ impl<'a> WeakForm<'a> {
     }
 
     /// Adds ∫∇F·∇v: the row of coefficients of the nodal values.
+    #[inline(always)]
     pub fn add(&self, test: TestFunction, gathered: &mut Gathered, sum: &mut RowSum) {
         match &self.trial {
             TrialGradients::Blended(stencils) => match stencils.order() {
@@ -179,6 +180,7 @@ impl<'a> WeakForm<'a> {
         }
     }
 
+    #[inline(always)]
     fn add_blended<const P: usize, const N: usize>(
         &self,
         stencils: &Stencils,
@@ -206,6 +208,7 @@ impl<'a> WeakForm<'a> {
         self.add_places::<P, N>(element, g, slots, gathered);
     }
 
+    #[inline(always)]
     fn gather_hat<const P: usize, const N: usize>(&self, hat: &Hat, gathered: &mut Gathered) {
         let elements = hat.elements();
         let Some(node) = elements.first().map(|element| element.nodes[0]) else { return };
@@ -272,6 +275,7 @@ fn add_integrated(integrals: &[Integrals], element: &Element, g: [f64; 2], sum: 
 }
 
 /// Adds what the polynomials of the nodes gathered make of the nodal values.
+#[inline(always)]
 fn spread<const P: usize, const N: usize>(stencils: &Stencils, gathered: &mut Gathered, sum: &mut RowSum) {
     let stretch = stencils.metric().stretch();
     for (&node, moments) in gathered.nodes.iter().zip(gathered.moments.as_chunks::<N>().0) {

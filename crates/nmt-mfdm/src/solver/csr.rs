@@ -2,6 +2,7 @@
 
 use crate::parallel::{fill_pieces, large_pieces, map_owned, take_pieces};
 use crate::solver::vector::{Sides, add_multiple};
+use prefetch_index::prefetch_index;
 use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
@@ -12,6 +13,9 @@ const PRODUCT_ROWS: usize = 1 << 11;
 
 /// Entries of a row that a product of three matrices has room for at first: twice as many as those of fine levels have.
 const ROOM_IN_A_ROW: usize = 64;
+
+/// Bytes in a line of the cache.
+const LINE: usize = 64;
 
 /// A sparse matrix by rows; columns ascend in a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +35,7 @@ pub(crate) struct Row<'a> {
 
 impl<'a> Row<'a> {
     /// (column, value) in order.
-    #[inline]
+    #[inline(always)]
     pub fn entries(self) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.columns.iter().zip(self.values).map(|(column, value)| (*column as usize, *value))
     }
@@ -71,7 +75,7 @@ impl<'a> Row<'a> {
     }
 
     /// The first and the last column; `None` for an empty row.
-    #[inline]
+    #[inline(always)]
     pub fn reach(self) -> Option<[usize; 2]> {
         Some([*self.columns.first()? as usize, *self.columns.last()? as usize])
     }
@@ -163,6 +167,15 @@ impl Csr {
         self.columns.resize(first + n, 0);
         self.values.resize(first + n, 0.0);
         (&mut self.columns[first..], &mut self.values[first..])
+    }
+
+    /// Has a row brought into the cache, before it is asked for.
+    #[inline(always)]
+    pub fn fetch(&self, i: usize) {
+        if let Some(&[from, end]) = self.starts.get(i..i.wrapping_add(2)).and_then(<[usize]>::first_chunk) {
+            (from..end).step_by(LINE / 4).for_each(|entry| prefetch_index(&self.columns, entry));
+            (from..end).step_by(LINE / 8).for_each(|entry| prefetch_index(&self.values, entry));
+        }
     }
 
     /// Ends a row.

@@ -18,6 +18,9 @@ const BLOCK: [usize; 2] = [1 << 13, 1 << 16];
 /// Blocks of a matrix whose size allows it: work for as many cores.
 const BLOCKS: usize = 16;
 
+/// Rows that are fetched before they are asked for: a hundredth of a microsecond each, and memory takes ten.
+const AHEAD: usize = 8;
+
 /// A diagonal below this part of the sum Σ|a_ij| of its row is weak.
 ///
 /// Sound rows have 0.35 to 0.5. Of the 9-node stars of irregular clouds a hundredth have less than 0.27, a thousandth a
@@ -133,6 +136,7 @@ impl Smoother {
             let n = x.len();
             let mut next = 0; // whose residual is taken next
             for k in 0..n {
+                a.fetch(first + k + AHEAD);
                 let Parted { below, own, .. } = self.row(a, first + k);
                 let rest = less(r[k], within(below, first, &x[..k]));
                 x[k] = self.step(first + k, rest);
@@ -172,6 +176,7 @@ impl Smoother {
             let n = x.len();
             let mut next = n; // its row, and those after it, have their product
             for k in (0..n).rev() {
+                a.fetch((first + k).wrapping_sub(AHEAD));
                 let (row, own) = (a.row(first + k), self.row(a, first + k).own);
                 let before = if crosses(row, first, n) {
                     // Wraps to a number past the block where j comes before it.
