@@ -3,7 +3,7 @@
 use crate::assembly::Frame;
 use crate::batches::{self, Batched};
 use crate::blend::NodalPolynomials;
-use crate::circulation::{hole_equations, nodes_of_equations};
+use crate::circulation::{hole_equations, nodes_of_equations, of_elements};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
@@ -15,7 +15,7 @@ use crate::problem::{Formulation, Test, Trial};
 use crate::shapes::TrialSpace;
 use crate::slopes::KnownSlopes;
 use crate::solve::{Event, Stage};
-use crate::solver::{self, LinearSolve, RightSide, Solver, direct};
+use crate::solver::{self, Border, LinearSolve, RightSide, Solver, direct};
 use crate::source::Source;
 use crate::star::default_star;
 use crate::steady::{Hold, steady};
@@ -108,21 +108,23 @@ pub(crate) fn nodal_solution(
         let (rule, source_rule) = (params.rule()?, source_rule(params));
         let frame =
             Frame { mesh, node_tris: around.node_tris, roles: &roles, source, fluxes, source_rule: &source_rule };
-        match from {
+        let assembled = match from {
             Some(operator) => {
                 observer(Event::Begun(Stage::Assemble));
                 let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
                 operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
             }
             None => Assembly { frame, around, params, rule: &rule }.assemble(observer),
-        }
+        };
+        Ok((assembled?, of_elements(&frame)))
     });
-    let Assembled { system, equations, stars, used_stars, smoothing, holds } = assembled?;
+    let (Assembled { mut system, equations, stars, used_stars, smoothing, holds }, of_elements) = assembled?;
     observer(Event::Ended(Stage::Assemble));
 
     observer(Event::Begun(Stage::Solve));
+    let border = Border { equations: &equations, of_elements: &of_elements };
     let Nodal { values, constants, linear } =
-        solve_system(&system, mesh.xy(), &equations, &roles, (params.solver, target), observer)?;
+        solve_system(&mut system, mesh.xy(), border, &roles, (params.solver, target), observer)?;
     let is_whole = is_mended(params) && roles.n_unknowns == mesh.cloud().n_interior();
     let LinearSystem { matrix, is_beside, .. } = system;
     let operator = is_whole.then(|| Operator { matrix, is_beside, holds, larger: used_stars.larger().clone() });
@@ -380,18 +382,43 @@ struct Nodal {
     linear: LinearSolve,
 }
 
-/// F = F_0 + Σ c_k F_k with one factorisation; the holes' equations give the c_k.
+/// The unknowns and the constants of the holes: found together, or where that is not done, F = F_0 + Σ c_k F_k with one
+/// set-up, and the holes' equations give the c_k.
 fn solve_system(
+    system: &mut LinearSystem,
+    xy: &[Point],
+    border: Border,
+    roles: &Roles,
+    (choice, target): (Solver, f64),
+    observer: &mut dyn FnMut(Event),
+) -> Result<Nodal, MfdmError> {
+    let (x, constants, linear) = match solver::solve_bordered(system, border, choice, target, observer) {
+        Some((mut x, how)) => {
+            let constants = x.split_off(system.n());
+            (x, constants, how)
+        }
+        None => put_together(system, xy, border.equations, roles, (choice, target), observer)?,
+    };
+    let value = |node: usize| match roles.of(NodeId::of(node)) {
+        Role::Known(value) => value,
+        Role::Hole(hole) => constants[hole as usize],
+        Role::Unknown(k) => x[k as usize],
+    };
+    Ok(Nodal { values: (0..xy.len()).map(value).collect(), constants, linear })
+}
+
+/// F = F_0 + Σ c_k F_k.
+fn put_together(
     system: &LinearSystem,
     xy: &[Point],
     equations: &[Equation],
     roles: &Roles,
     (choice, target): (Solver, f64),
     observer: &mut dyn FnMut(Event),
-) -> Result<Nodal, MfdmError> {
+) -> Result<(Vec<f64>, Vec<f64>, LinearSolve), MfdmError> {
     let of_holes = system.hole_columns.iter().map(|column| RightSide::Column(column));
     let right_sides: Vec<RightSide> = std::iter::once(RightSide::All(&system.rhs)).chain(of_holes).collect();
-    let solver::Solutions { x, how } =
+    let solver::Solutions { mut x, how } =
         solver::solve(system, &|| roles.places(xy), &right_sides, choice, target, observer)?;
     let along = |equation: &Equation, x: &[f64]| -> f64 {
         equation.row.unknowns.iter().map(|&(k, coefficient)| coefficient * x[k as usize]).sum()
@@ -405,13 +432,10 @@ fn solve_system(
         b.push(equation.rhs - equation.row.known - along(equation, &x[0]));
     }
     let constants = if equations.is_empty() { Vec::new() } else { direct::solve_dense(&matrix, &b)? };
-    let value = |node: usize| match roles.of(NodeId::of(node)) {
-        Role::Known(value) => value,
-        Role::Hole(hole) => constants[hole as usize],
-        Role::Unknown(k) => {
-            let parts = constants.iter().zip(&x[1..]).map(|(c, x)| c * x[k as usize]);
-            x[0][k as usize] + parts.sum::<f64>()
-        }
-    };
-    Ok(Nodal { values: (0..xy.len()).map(value).collect(), constants, linear: how })
+    let of_holes = x.split_off(1);
+    let mut sum = x.swap_remove(0);
+    for (k, value) in sum.iter_mut().enumerate() {
+        *value += constants.iter().zip(&of_holes).map(|(c, x)| c * x[k]).sum::<f64>();
+    }
+    Ok((sum, constants, how))
 }

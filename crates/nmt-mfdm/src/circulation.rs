@@ -4,8 +4,9 @@ use crate::assembly::Frame;
 use crate::element::Element;
 use crate::problem::Formulation;
 use crate::row_sum::RowSum;
-use crate::system::Equation;
+use crate::system::{Equation, SplitRow};
 use crate::weak::{Gathered, TestFunction, WeakForm};
+use nmt_geom::point::dot;
 use nmt_geom::{LoopId, NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 
@@ -25,10 +26,7 @@ pub(crate) fn hole_equations(frame: &Frame, weak: &WeakForm, formulation: Formul
     let equation = |ring: Ring| {
         for &t in ring.triangles.iter().filter(|t| ring.corners_of_one(mesh, **t) != [true; 3]) {
             let element = Element::new(mesh, t);
-            let of_one = ring.corners_of_one(mesh, t);
-            let slopes = element.slopes();
-            let slope = [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum());
-            weak.add(TestFunction::Linear(&element, slope), &mut gathered, &mut sum);
+            weak.add(TestFunction::Linear(&element, ring.slope(mesh, &element)), &mut gathered, &mut sum);
         }
         let n_ones = |t: TriId| ring.corners_of_one(mesh, t).iter().filter(|one| **one).count() as f64;
         let integral = |t: &TriId| mesh.area(*t) * n_ones(*t) / 3.0;
@@ -36,6 +34,23 @@ pub(crate) fn hole_equations(frame: &Frame, weak: &WeakForm, formulation: Formul
         Equation { row: sum.take(roles), rhs }
     };
     (0..roles.n_holes).map(|hole| Ring::new(mesh, node_tris, hole, formulation)).map(equation).collect()
+}
+
+/// The left sides of the equations of all holes as linear elements have them, v being 1 on the hole's nodes alone.
+pub(crate) fn of_elements(frame: &Frame) -> Vec<SplitRow> {
+    let Frame { mesh, node_tris, roles, .. } = *frame;
+    let mut sum = RowSum::new(if roles.n_holes == 0 { 0 } else { mesh.cloud().n_nodes() });
+    let row = |hole: usize| {
+        let ring = Ring::new(mesh, node_tris, hole, Formulation::Fem);
+        for &t in &ring.triangles {
+            let element = Element::new(mesh, t);
+            let slope = ring.slope(mesh, &element);
+            let slopes = element.slopes();
+            (0..3).for_each(|a| sum.add(element.nodes[a], element.area * dot(slope, slopes[a])));
+        }
+        sum.take(roles)
+    };
+    (0..roles.n_holes).map(row).collect()
 }
 
 /// The nodes whose polynomials enter the equations of the holes, ascending.
@@ -69,6 +84,12 @@ impl Ring {
         triangles.sort_unstable();
         triangles.dedup();
         Self { hole, ones, triangles }
+    }
+
+    /// ∇v on a triangle.
+    fn slope(&self, mesh: &Mesh, element: &Element) -> [f64; 2] {
+        let (of_one, slopes) = (self.corners_of_one(mesh, element.triangle), element.slopes());
+        [0, 1].map(|d| (0..3).filter(|a| of_one[*a]).map(|a| slopes[a][d]).sum())
     }
 
     fn corners_of_one(&self, mesh: &Mesh, triangle: TriId) -> [bool; 3] {

@@ -2,6 +2,7 @@
 //! true residual.
 
 mod amg;
+mod border;
 mod choice;
 pub(crate) mod csr;
 pub(crate) mod direct;
@@ -12,6 +13,7 @@ mod ordering;
 mod right_side;
 mod vector;
 
+pub(crate) use border::Border;
 pub use choice::{DIRECT_MAX_UNKNOWNS, Iteration, LinearSolve, Method, Solver};
 pub(crate) use right_side::RightSide;
 
@@ -19,6 +21,7 @@ use crate::error::MfdmError;
 use crate::solve::Event;
 use crate::system::LinearSystem;
 use amg::{Hierarchy, Symmetry};
+use border::{Bordered, Operator};
 use csr::{Csr, Diagonal};
 use krylov::{Iterated, Limits, Task};
 use nmt_geom::Point;
@@ -101,7 +104,8 @@ fn iterate(
     let diagonal = Diagonal::new(matrix);
     let symmetry =
         if matrix.is_symmetric(&diagonal, SYMMETRIC_REL) { Symmetry::Symmetric } else { Symmetry::Unsymmetric };
-    let hierarchy = Hierarchy::new(matrix, diagonal, symmetry)?;
+    let hierarchy = Hierarchy::new(matrix, diagonal, symmetry, 0)?;
+    let a = Operator::from(matrix);
     let mut all = Vec::with_capacity(right_sides.len());
     for some in right_sides.chunks(2) {
         let (first, before) = (all.len(), all.iter().map(|one: &Iterated| one.iterations).max().unwrap_or(0));
@@ -112,9 +116,9 @@ fn iterate(
         let told: &mut dyn FnMut(usize, f64) = &mut told;
         match *some {
             [one, other] => {
-                all.extend(iterate_some(Task { a: matrix, b: [one, other], limits, told }, &hierarchy, symmetry));
+                all.extend(iterate_some(Task { a, b: [one, other], limits, told }, &hierarchy, symmetry));
             }
-            [one] => all.extend(iterate_some(Task { a: matrix, b: [one], limits, told }, &hierarchy, symmetry)),
+            [one] => all.extend(iterate_some(Task { a, b: [one], limits, told }, &hierarchy, symmetry)),
             _ => {}
         }
         let limit = MAX_RESIDUAL.max(10.0 * limits.target);
@@ -122,6 +126,11 @@ fn iterate(
             return None;
         }
     }
+    let how = how(&all, &hierarchy, symmetry);
+    Some(Solutions { x: all.into_iter().map(|one| one.x).collect(), how })
+}
+
+fn how(all: &[Iterated], hierarchy: &Hierarchy, symmetry: Symmetry) -> LinearSolve {
     let iteration = Iteration {
         iterations: all.iter().map(|one| one.iterations).max().unwrap_or(0),
         levels: hierarchy.n_levels(),
@@ -129,13 +138,42 @@ fn iterate(
     };
     let residual = all.iter().map(|one| one.residual).fold(0.0, f64::max);
     let method = if symmetry == Symmetry::Symmetric { Method::Cg } else { Method::Bicgstab };
-    let how = LinearSolve { method, residual, iteration: Some(iteration), fell_back: false };
-    Some(Solutions { x: all.into_iter().map(|one| one.x).collect(), how })
+    LinearSolve { method, residual, iteration: Some(iteration), fell_back: false }
+}
+
+/// The unknowns of a system and those of its border, found together by BiCGSTAB with a multigrid cycle; `None` where that does
+/// not converge, or where the system is one for the direct solver. The system is as it was then.
+pub(crate) fn solve_bordered(
+    system: &mut LinearSystem,
+    border: Border,
+    choice: Solver,
+    target: f64,
+    observer: &mut dyn FnMut(Event),
+) -> Option<(Vec<f64>, LinearSolve)> {
+    if !choice.iterates(system.n()) {
+        return None;
+    }
+    let bordered = Bordered::new(system, border)?;
+    let (matrix, symmetry) = (bordered.matrix(), Symmetry::Unsymmetric);
+    let hierarchy = Hierarchy::new(matrix, Diagonal::new(matrix), symmetry, bordered.n_more())?;
+    let told: &mut dyn FnMut(usize, f64) =
+        &mut |iterations, residual| observer(Event::Iteration { iterations, residual, target });
+    let b = [RightSide::All(bordered.rhs())];
+    let task = Task { a: bordered.operator(), b, limits: Limits { target, ..LIMITS }, told };
+    let found = iterate_some(task, &hierarchy, symmetry);
+    let how = how(&found, &hierarchy, symmetry);
+    let [Iterated { x, residual, .. }] = found;
+    // NaN is no solution.
+    (residual <= MAX_RESIDUAL.max(10.0 * target)).then_some((x, how))
 }
 
 fn iterate_some<const K: usize>(task: Task<K>, hierarchy: &Hierarchy, symmetry: Symmetry) -> [Iterated; K] {
     let mut room = hierarchy.workspace();
-    let cycle = move |r: &[Sides<K>], z: &mut [Sides<K>], az: &mut [Sides<K>]| hierarchy.cycle(r, z, az, &mut room);
+    let a = task.a;
+    let cycle = move |r: &[Sides<K>], z: &mut [Sides<K>], az: &mut [Sides<K>]| {
+        hierarchy.cycle(r, z, az, &mut room);
+        a.correct(z, az);
+    };
     match symmetry {
         Symmetry::Symmetric => krylov::cg(task, cycle),
         Symmetry::Unsymmetric => krylov::bicgstab(task, cycle),

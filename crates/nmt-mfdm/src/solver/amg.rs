@@ -73,17 +73,23 @@ struct Vectors<const K: usize> {
 
 impl<'a> Hierarchy<'a> {
     /// Levels down to at most [`COARSEST`] unknowns; `None` where the matrix cannot be coarsened. O(entries).
-    pub fn new(fine: &'a Csr, of_fine: Diagonal, symmetry: Symmetry) -> Option<Self> {
+    ///
+    /// The last `n_borders` unknowns hang together with as many others as they like, such as a hole's constant with all around
+    /// it: aggregated, they would have all of those hang together. Every level has them, each by itself.
+    pub fn new(fine: &'a Csr, of_fine: Diagonal, symmetry: Symmetry, n_borders: usize) -> Option<Self> {
         let mut levels = Vec::new();
         let (mut matrix, mut diagonal) = (Cow::Borrowed(fine), of_fine);
         let mut threshold = THRESHOLD;
-        while matrix.n_rows() > COARSEST {
-            let strong = strong(&matrix, &diagonal, threshold);
-            let aggregates = aggregate(&strong.matrix);
+        while matrix.n_rows() > COARSEST + 2 * n_borders {
+            let strong = strong(&matrix, &diagonal, threshold, n_borders);
+            let n_inside = matrix.n_rows() - n_borders;
+            let mut aggregates = aggregate(&strong.matrix);
+            aggregates.add_single(n_inside);
             if aggregates.n == 0 || aggregates.n as f64 > LEAST_COARSENING * matrix.n_rows() as f64 {
                 return None;
             }
-            let is_weak = weak(&matrix, &diagonal);
+            let mut is_weak = weak(&matrix, &diagonal);
+            is_weak[n_inside..].fill(false);
             let prolongator = prolongator(&strong, &aggregates, &is_weak);
             let patches = patches(&matrix, &diagonal, &strong.matrix, &is_weak, symmetry);
             drop((strong, aggregates));
@@ -205,7 +211,7 @@ mod tests {
         let a = symmetric();
         let diagonal = Diagonal::new(&a);
         assert!(a.is_symmetric(&diagonal, 0.0));
-        let hierarchy = Hierarchy::new(&a, diagonal, Symmetry::Symmetric);
+        let hierarchy = Hierarchy::new(&a, diagonal, Symmetry::Symmetric, 0);
         let hierarchy = hierarchy.unwrap_or_else(|| unreachable!("it can be coarsened"));
         let n = a.n_rows();
         let pair: Vec<Sides<2>> = (0..n).map(|i| [((i * 7) % 11) as f64 - 5.0, ((i * 5) % 13) as f64 - 6.0]).collect();

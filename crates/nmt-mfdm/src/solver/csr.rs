@@ -3,6 +3,7 @@
 use crate::parallel::{fill_pieces, large_pieces, map_owned, take_pieces};
 use crate::solver::vector::{Sides, add_multiple};
 use prefetch_index::prefetch_index;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Rows per piece of a matrix × vector product.
@@ -335,6 +336,43 @@ impl Csr {
             let length = anew.next_if(|(number, _)| **number == i).map_or(old_length, |(_, row)| row.len());
             self.starts[i + 1] = self.starts[i] + length;
         }
+    }
+
+    /// Borders it by columns, given by their entries (row, value) by ascending row, and by as many rows of the bordered matrix.
+    pub fn border(&mut self, columns: &[Vec<(u32, f64)>], rows: &[Vec<(u32, f64)>]) {
+        let mut beside: BTreeMap<usize, Vec<(u32, f64)>> = BTreeMap::new(); // rows that the columns enter
+        for (k, column) in (self.n_columns as u32..).zip(columns) {
+            for &(row, value) in column {
+                let entries = || self.row(row as usize).entries().map(|(j, value)| (j as u32, value)).collect();
+                beside.entry(row as usize).or_insert_with(entries).push((k, value));
+            }
+        }
+        let numbers: Vec<usize> = beside.keys().copied().collect();
+        let longer: Vec<&[(u32, f64)]> = beside.values().map(Vec::as_slice).collect();
+        self.replace_rows(&numbers, &longer);
+        self.n_columns += columns.len();
+        for row in rows {
+            row.iter().for_each(|&(column, value)| self.push(column, value));
+            self.end_row();
+        }
+    }
+
+    /// Leaves the first `n` rows and columns.
+    pub fn unborder(&mut self, n: usize) {
+        self.starts.truncate(n + 1);
+        let (mut from, mut to) = (0, 0);
+        for i in 0..n {
+            let end = self.starts[i + 1];
+            let inside = self.columns[from..end].partition_point(|column| (*column as usize) < n);
+            if from != to {
+                self.move_entries(from..from + inside, to);
+            }
+            (from, to) = (end, to + inside);
+            self.starts[i + 1] = to;
+        }
+        self.columns.truncate(to);
+        self.values.truncate(to);
+        self.n_columns = n;
     }
 
     fn move_entries(&mut self, from: Range<usize>, to: usize) {

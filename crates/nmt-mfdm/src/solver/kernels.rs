@@ -11,7 +11,7 @@ pub(crate) fn setups(system: &LinearSystem, times: usize) -> f64 {
 }
 
 fn hierarchy(system: &LinearSystem) -> Option<Hierarchy<'_>> {
-    Hierarchy::new(&system.matrix, Diagonal::new(&system.matrix), Symmetry::Unsymmetric)
+    Hierarchy::new(&system.matrix, Diagonal::new(&system.matrix), Symmetry::Unsymmetric, 0)
 }
 
 /// Builds them once and makes so many cycles.

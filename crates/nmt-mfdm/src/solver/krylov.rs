@@ -1,6 +1,6 @@
 //! Conjugate gradients and BiCGSTAB, preconditioned, for several right sides in step; the true residual decides.
 
-use crate::solver::csr::Csr;
+use crate::solver::border::Operator;
 use crate::solver::right_side::RightSide;
 use crate::solver::vector::{Sides, dot, norm, one_of, update};
 use std::array::from_fn;
@@ -25,7 +25,7 @@ pub(crate) struct Limits {
 
 /// What is iterated, and to where.
 pub(crate) struct Task<'a, const K: usize> {
-    pub a: &'a Csr,
+    pub a: Operator<'a>,
     pub b: [RightSide<'a>; K],
     pub limits: Limits,
     /// Takes iterations and the largest residual after each.
@@ -222,6 +222,7 @@ pub(crate) fn bicgstab<const K: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::csr::Csr;
     use crate::solver::csr::tests::of_dense;
 
     const LIMITS: Limits = Limits { target: 1e-12, iterations: 100 };
@@ -247,7 +248,7 @@ mod tests {
 
     /// By conjugate gradients or BiCGSTAB, with one number of the diagonal for all.
     fn solved<const K: usize>(a: &Csr, b: [RightSide; K], diagonal: f64, by_cg: bool) -> [Iterated; K] {
-        let task = Task { a, b, limits: LIMITS, told: &mut |_, _| {} };
+        let task = Task { a: a.into(), b, limits: LIMITS, told: &mut |_, _| {} };
         if by_cg { cg(task, jacobi(a, diagonal)) } else { bicgstab(task, jacobi(a, diagonal)) }
     }
 

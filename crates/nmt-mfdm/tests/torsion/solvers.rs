@@ -50,8 +50,8 @@ fn iteration_and_factorisation_agree_on_torsion_with_two_holes() {
         let by = |solver| solve(&TorsionProblem::default(), &mesh, &SolveParams { solver, ..params }).expect(what);
         let (direct, iterated) = (by(Solver::Direct), by(Solver::Iterative));
         println!("{what}: {:?}, {:.1e}", iterated.linear, difference(&iterated.f, &direct.f));
-        let is_symmetric = params.formulation == Formulation::Fem || params.test == Test::Trial;
-        assert_iterated(&iterated.linear, if is_symmetric { Method::Cg } else { Method::Bicgstab }, what);
+        // With the equations of the holes no system is symmetric.
+        assert_iterated(&iterated.linear, Method::Bicgstab, what);
         assert!(difference(&iterated.f, &direct.f) < 1e-9, "{what}"); // of residuals of 1e-10
         assert!((iterated.j / direct.j - 1.0).abs() < 1e-9, "{what}");
     }

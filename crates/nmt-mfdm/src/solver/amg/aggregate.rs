@@ -51,6 +51,16 @@ pub(crate) fn aggregate(strong: &Csr) -> Aggregates {
     Aggregates { of, n: count as usize }
 }
 
+impl Aggregates {
+    /// Makes each unknown from `first` on an aggregate of its own, the last ones in the same order.
+    pub fn add_single(&mut self, first: usize) {
+        for of in &mut self.of[first..] {
+            *of = self.n as u32;
+            self.n += 1;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -35,6 +35,10 @@ fn smoothed_row(strong: &Strong, aggregates: &Aggregates, i: usize, is_weak: boo
         return;
     }
     let entries = strong.matrix.row(i);
+    if entries.columns.is_empty() {
+        // An aggregate by itself: the sum of all that is weak, its own coefficient included, may be 0.
+        return row.push((own, 1.0));
+    }
     let sum: f64 = entries.values.iter().map(|v| v.abs()).sum();
     let diagonal = if is_weak { sum } else { strong.diagonal[i] };
     // A diagonal that its strong neighbours dwarf would throw the step far off.
@@ -70,7 +74,7 @@ mod tests {
         };
         let rows: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect();
         let a = of_dense(&rows);
-        let strong = strong(&a, &Diagonal::new(&a), 0.08);
+        let strong = strong(&a, &Diagonal::new(&a), 0.08, 0);
         assert!((0..n).all(|i| strong.matrix.row(i).columns.len() == 2));
         let aggregates = aggregate(&strong.matrix);
         let mut is_weak = vec![false; n];
