@@ -38,13 +38,26 @@ pub fn sides(ring: &[Point]) -> impl Iterator<Item = (Point, Point)> {
     (0..n).map(move |k| (ring[k], ring[(k + 1) % n]))
 }
 
-/// Lines across a ring on which [`inner_point`] looks for its place, each way.
-const LINES: usize = 16;
+/// Lines across a ring on which [`inner_points`] looks for its points, each way.
+const LINES: usize = 64;
 
-/// A point inside, about as far from the sides as any; `None` where nothing is enclosed. O(sides), some hundred times.
+/// Least distance of inner points, in depths of the deeper one: a ring that is about round has one.
+const APART: f64 = 1.25;
+
+/// A point inside a ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InnerPoint {
+    /// Where it lies.
+    pub at: Point,
+    /// Its distance from the sides.
+    pub depth: f64,
+}
+
+/// Points inside, as deep as they come, that are as far apart as they are deep: one in the middle of a circle, a row of them
+/// along a slot; none where nothing is enclosed. O(sides), some hundred times.
 ///
-/// Of the middles of what lies inside on 16 lines along each axis, the one that is farthest from the sides.
-pub fn inner_point(ring: &[Point]) -> Option<Point> {
+/// They are taken from the middles of what lies inside on 64 lines along each axis, the deepest first.
+pub fn inner_points(ring: &[Point]) -> Vec<InnerPoint> {
     let envelope = Bbox::of(ring.iter().copied());
     let middles = [0, 1].into_iter().flat_map(|axis| {
         let (low, extent) = (envelope.min[axis], envelope.max[axis] - envelope.min[axis]);
@@ -58,11 +71,15 @@ pub fn inner_point(ring: &[Point]) -> Option<Point> {
         })
     });
     let depth = |p: Point| sides(ring).map(|(a, b)| distance_to(p, a, b)).fold(f64::INFINITY, f64::min);
-    let deeper = |best: (f64, Option<Point>), p: Point| {
-        let own = depth(p);
-        if own > best.0 { (own, Some(p)) } else { best }
-    };
-    middles.fold((0.0, None), deeper).1
+    let mut candidates: Vec<InnerPoint> = middles.map(|at| InnerPoint { at, depth: depth(at) }).collect();
+    candidates.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    let mut taken: Vec<InnerPoint> = Vec::new();
+    for point in candidates.into_iter().filter(|point| point.depth > 0.0) {
+        if taken.iter().all(|other| distance(point.at, other.at) >= APART * other.depth) {
+            taken.push(point);
+        }
+    }
+    taken
 }
 
 /// Where a side crosses the line of one coordinate: its other one.
@@ -105,15 +122,32 @@ mod tests {
         let rings: [(&[Point], f64); 3] =
             [(&L, 2.0 - SQRT_2), (&slanted, 0.000_5 * SQRT_2), (&triangle, 1.5 - 5f64.sqrt() / 2.0)];
         for (ring, deepest) in rings {
-            let p = inner_point(ring).expect("a point");
-            assert!(depth(ring, p) > 0.8 * deepest, "{p:?}: {} of {deepest}", depth(ring, p));
+            let points = inner_points(ring);
+            assert!(points[0].depth > 0.8 * deepest, "{:?} of {deepest}", points[0]);
+            for (k, point) in points.iter().enumerate() {
+                assert_eq!(point.depth, depth(ring, point.at));
+                assert!(points[..k].iter().all(|other| distance(point.at, other.at) >= APART * other.depth));
+            }
         }
     }
 
     #[test]
+    fn a_circle_has_one_inner_point_and_a_slot_a_row_of_them() {
+        let angle = |k: usize| TAU * k as f64 / 90.0;
+        let circle: Vec<Point> = (0..90).map(|k| [3.0 + angle(k).cos(), angle(k).sin()]).collect();
+        let points = inner_points(&circle);
+        assert!(points.len() == 1 && distance(points[0].at, [3.0, 0.0]) < 0.02, "{points:?}");
+        let slot = [[0.0, 0.0], [10.0, 0.0], [10.0, 1.0], [0.0, 1.0]];
+        let mut along: Vec<f64> = inner_points(&slot).iter().filter(|p| p.depth > 0.45).map(|p| p.at[0]).collect();
+        along.sort_by(f64::total_cmp);
+        assert!(along[0] < 1.0 && along[along.len() - 1] > 9.0);
+        assert!(along.windows(2).all(|pair| (0.6..1.3).contains(&(pair[1] - pair[0]))), "{along:?}");
+    }
+
+    #[test]
     fn nothing_lies_within_a_ring_without_an_area() {
-        assert_eq!(inner_point(&[]), None);
-        assert_eq!(inner_point(&[[0.0, 0.0], [1.0, 2.0]]), None);
+        assert_eq!(inner_points(&[]), []);
+        assert_eq!(inner_points(&[[0.0, 0.0], [1.0, 2.0]]), []);
     }
 
     proptest! {
@@ -122,9 +156,11 @@ mod tests {
             // Star-shaped about the origin.
             let angle = |k: usize| TAU * k as f64 / radii.len() as f64;
             let ring: Vec<Point> = (0..radii.len()).map(|k| [radii[k] * angle(k).cos(), radii[k] * angle(k).sin()]).collect();
-            let p = inner_point(&ring).expect("a point");
-            let locator = Locator::new(sides(&ring).map(|(a, b)| [a, b]));
-            prop_assert_eq!(locator.locate(p), Location::Inside);
+            let (points, locator) = (inner_points(&ring), Locator::new(sides(&ring).map(|(a, b)| [a, b])));
+            prop_assert!(!points.is_empty());
+            for point in points {
+                prop_assert_eq!(locator.locate(point.at), Location::Inside);
+            }
         }
     }
 }

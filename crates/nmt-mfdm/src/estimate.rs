@@ -145,7 +145,7 @@ impl Case<'_> {
     }
 
     fn warping(&self, params: &SolveParams, observer: &mut dyn FnMut(Event)) -> Result<Warping, MfdmError> {
-        let frame = StressFrame::of(self.mesh, self.section, self.solution)?;
+        let frame = StressFrame::of(self.mesh, self.solution);
         let nodal = NodalWarping::solve(self.mesh, self.section, frame, params, None, observer)?;
         let [field] = recover(self.mesh, params, [&nodal.values], observer)?;
         Ok(nodal.with_field(field))

@@ -72,12 +72,8 @@ impl StressFrame {
     }
 
     /// That of a `solution`, with outflows of the holes on which F = 0.
-    ///
-    /// # Errors
-    /// [`MfdmError::Curve`] where an edge has no length.
-    pub fn of(mesh: &Mesh, section: &Section, solution: &TorsionSolution) -> Result<Self, MfdmError> {
-        let centre = mesh.centroid();
-        Ok(Self { centre, outflows: Outflow::of_holes(mesh, section, solution, centre)? })
+    pub fn of(mesh: &Mesh, solution: &TorsionSolution) -> Self {
+        Self { centre: mesh.centroid(), outflows: Outflow::of_holes(mesh, solution) }
     }
 
     /// σ at `p` where w = 0.
