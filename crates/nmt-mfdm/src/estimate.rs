@@ -1,7 +1,8 @@
 //! How far the results may be off: bounds of J from the stress function and the warping function together.
 //!
 //! For every v that vanishes on the boundary 4∫v − ∫|∇v|² ≤ J, and for every σ with ∇·σ = −2 and the circulation 2A around
-//! each hole (of any circulation where F = 0 on the hole) J ≤ ∫|σ|²; the difference of the two is ∫|∇v − σ|² (Prager and Synge, Quart. Appl. Math. 5 (1947) 241–269).
+//! each hole (of any circulation where F = 0 on the hole) J ≤ ∫|σ|²; the difference of the two is ∫|∇v − σ|² (Prager and Synge,
+//! Quart. Appl. Math. 5 (1947) 241–269).
 //! Here v is the recovered stress function, for Gθ = 1, and σ that of the warping function ([`Warping`]).
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.

@@ -43,8 +43,8 @@ impl Outflow {
             let nodes = nodes_of(mesh, hole);
             let ramp = Ramp::new(mesh, &node_tris, &nodes);
             // ∇F and −(r − r₀) have the same divergence: any line around the hole would do.
-            let flow = ramp.flow(mesh, &node_tris, &solution.field) / solution.g_theta;
-            let lacking = flow + 2.0 * (ramp.volume(mesh, &node_tris) + hole_area(mesh, hole));
+            let flow = ramp.flow(mesh, &node_tris, &solution.field, solution.g_theta);
+            let lacking = flow + 2.0 * hole_area(mesh, hole);
             let within = inner_points(&nodes.iter().map(|node| mesh.xy()[node.index()]).collect::<Vec<_>>());
             // Each stands for as much of the edge as it is deep.
             let a_depth = lacking / (TAU * within.iter().map(|point| point.depth).sum::<f64>());
@@ -95,33 +95,22 @@ impl Ramp {
         Self(layers.into_iter().map(|(node, layer)| (node, height(layer))).collect())
     }
 
-    /// The triangles on which it is not 0, with its values at their corners.
-    fn triangles(&self, mesh: &Mesh, node_tris: &NodeTris) -> impl Iterator<Item = (Element, [f64; 3])> {
+    /// −∫∇F·∇v + 2∫v of the ramp v, what flows out of the hole for Gθ = 1; F is the field over `g_theta`.
+    fn flow(&self, mesh: &Mesh, node_tris: &NodeTris, field: &NodalPolynomials, g_theta: f64) -> f64 {
         let triangles: BTreeSet<TriId> = self.0.keys().flat_map(|node| node_tris.around(*node)).copied().collect();
-        triangles.into_iter().map(|t| {
-            let element = Element::new(mesh, t);
-            (element, element.nodes.map(|node| self.0.get(&node).copied().unwrap_or(0.0)))
-        })
-    }
-
-    /// ∫v of the ramp v.
-    fn volume(&self, mesh: &Mesh, node_tris: &NodeTris) -> f64 {
-        self.triangles(mesh, node_tris).map(|(element, v)| element.area * v.iter().sum::<f64>() / 3.0).sum()
-    }
-
-    /// −∫∇F·∇v.
-    fn flow(&self, mesh: &Mesh, node_tris: &NodeTris, field: &NodalPolynomials) -> f64 {
         let rule = RuleLanes::from(&six_points());
-        let through = |(element, v): (Element, [f64; 3])| {
+        let through = |t: TriId| {
+            let element = Element::new(mesh, t);
+            let v = element.nodes.map(|node| self.0.get(&node).copied().unwrap_or(0.0));
             let slopes = element.slopes();
             let slope = [0, 1].map(|d| (0..3).map(|a| v[a] * slopes[a][d]).sum::<f64>());
             let mut sum = Lanes::default();
-            for (four, weight) in field.slopes_at(mesh, element.triangle, &rule).iter().zip(rule.weights) {
+            for (four, weight) in field.slopes_at(mesh, t, &rule).iter().zip(rule.weights) {
                 sum += weight * (four.gradient[0] * slope[0] + four.gradient[1] * slope[1]);
             }
-            -element.area * sum.sum()
+            element.area * (2.0 * v.iter().sum::<f64>() / 3.0 - sum.sum() / g_theta)
         };
-        self.triangles(mesh, node_tris).map(through).sum()
+        triangles.into_iter().map(through).sum()
     }
 }
 

@@ -5,7 +5,7 @@
 //! of a hole's equation may be next to nothing, or of wrong sign, where its test function is 1 beyond the hole's edge.
 
 use crate::solver::csr::Csr;
-use crate::solver::vector::{Sides, add_multiple};
+use crate::solver::vector::{Sides, add_multiple, norm};
 use crate::system::{Equation, LinearSystem, SplitRow};
 
 /// Entries of a row by column, ascending.
@@ -37,7 +37,7 @@ impl<'a> Bordered<'a> {
             return None;
         }
         // Right sides of holes are large beside those of nodes, whose residuals would be lost among theirs.
-        let norm = system.rhs.iter().map(|b| b * b).sum::<f64>().sqrt();
+        let [norm] = norm(system.rhs.as_chunks::<1>().0);
         let scale = |equation: &Equation| {
             let scale = norm / (equation.rhs - equation.row.known).abs();
             if scale.is_normal() { scale } else { 1.0 }
