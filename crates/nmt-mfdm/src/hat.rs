@@ -6,7 +6,7 @@ use nmt_geom::point::{dot, sub};
 use nmt_tri::{Mesh, NodeTris};
 
 /// Nodes that are looked at side by side.
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = u8::BITS as usize;
 
 /// The hat of a node with what is around; room to be used again for the next.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +21,9 @@ impl Hat {
     pub fn become_of(&mut self, node: NodeId, mesh: &Mesh, node_tris: &NodeTris) {
         let at = mesh.xy()[node.index()];
         self.elements.clear();
-        self.elements.extend(node_tris.around(node).iter().map(|&t| Element::about(mesh, t, node, at)));
+        for &t in node_tris.around(node) {
+            self.elements.push(Element::about(mesh, t, node, at));
+        }
         self.find_nexts();
     }
 
@@ -44,12 +46,17 @@ impl Hat {
     /// The element whose second node this is, by number; there is one for each side that lies inside the mesh.
     #[inline(always)]
     pub fn element_from(&self, node: NodeId) -> Option<usize> {
-        // Where it is found cannot be foreseen: all are looked at, none branched on.
-        let place =
-            |nexts: &[NodeId; AT_ONCE]| (0..AT_ONCE).fold(AT_ONCE, |at, k| if nexts[k] == node { k } else { at });
-        self.nexts.iter().enumerate().find_map(|(some, nexts)| match place(nexts) {
-            AT_ONCE => None,
-            k => Some(some * AT_ONCE + k),
+        // Where it is found cannot be foreseen: all are looked at, a bit each, none branched on.
+        let found = |nexts: &[NodeId; AT_ONCE]| {
+            let mut bits = 0;
+            for (k, next) in nexts.iter().enumerate() {
+                bits |= u8::from(*next == node) << k;
+            }
+            bits
+        };
+        self.nexts.iter().enumerate().find_map(|(some, nexts)| match found(nexts) {
+            0 => None,
+            bits => Some(some * AT_ONCE + bits.trailing_zeros() as usize),
         })
     }
 

@@ -228,7 +228,9 @@ impl Quartet {
         let (inverse, _) = self.inverse.as_chunks::<C>();
         let (rows, _) = self.rows.as_chunks_mut::<C>();
         for (j, row) in rows[..C].iter_mut().enumerate() {
-            (0..=j).for_each(|m| row[m] = inverse[m][j]);
+            for (own, above) in row.iter_mut().zip(&inverse[..=j]) {
+                *own = above[j];
+            }
         }
         self.finish::<C, C>();
     }
@@ -369,13 +371,20 @@ fn reflect_some<const C: usize, const S: usize>(v: &[Lanes], beta: Lanes, x: &mu
     let mut products = [Lanes::default(); S];
     for (row, &v) in x.iter().zip(v) {
         if let Some(row) = row[first..].first_chunk::<S>() {
-            (0..S).for_each(|s| products[s] += v * row[s]);
+            // Closures might be left out of what is compiled for wide vectors; loops are not.
+            for (product, &x) in products.iter_mut().zip(row) {
+                *product += v * x;
+            }
         }
     }
-    products.iter_mut().for_each(|product| *product *= beta);
+    for product in &mut products {
+        *product *= beta;
+    }
     for (row, &v) in x.iter_mut().zip(v) {
         if let Some(row) = row[first..].first_chunk_mut::<S>() {
-            (0..S).for_each(|s| row[s] -= v * products[s]);
+            for (x, &product) in row.iter_mut().zip(&products) {
+                *x -= v * product;
+            }
         }
     }
 }

@@ -12,9 +12,9 @@ const MARKED: usize = 4;
 /// The nodes of a star as bits: nodes near each other have numbers near each other, so that a usual star lies in few words.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Marks {
-    first: u32,             // word
-    further: [u16; MARKED], // words by their distance from it; 0 beyond the last
-    bits: [u64; MARKED],    // 0 beyond the last word
+    halves: [[u32; 2]; MARKED], // of the bits, 0 beyond the last word; in halves to be aligned as the rest is
+    first: u32,                 // word
+    further: [u16; MARKED],     // words by their distance from it; 0 beyond the last
 }
 
 impl Marks {
@@ -32,15 +32,24 @@ impl Marks {
             let further = u16::try_from(node.0 / BITS - marks.first).ok()?;
             k += usize::from(further != marks.further[k]);
             *marks.further.get_mut(k)? = further;
-            marks.bits[k] |= 1 << (node.0 % BITS);
+            marks.halves[k][(node.0 % BITS / 32) as usize] |= 1 << (node.0 % 32);
         }
         Some(marks)
+    }
+
+    /// Each word that has some, by its number, with its bits.
+    #[inline(always)]
+    fn words(&self) -> impl Iterator<Item = (u32, u64)> {
+        let first = self.first;
+        let whole = |[low, high]: [u32; 2]| u64::from(low) | u64::from(high) << 32;
+        let words = self.further.iter().zip(&self.halves);
+        words.map(move |(further, halves)| (first + u32::from(*further), whole(*halves)))
     }
 
     /// Whether there are none.
     #[inline(always)]
     pub fn is_none(&self) -> bool {
-        self.bits[0] == 0
+        self.halves[0] == [0, 0]
     }
 }
 
@@ -65,7 +74,7 @@ impl RowSum {
     #[inline(always)]
     pub fn add(&mut self, node: NodeId, coefficient: f64) {
         self.make_room();
-        self.mark(node.0 / BITS, 1 << (node.0 % BITS));
+        mark(&mut self.bits, &mut self.words, &mut self.n_words, (node.0 / BITS, 1 << (node.0 % BITS)));
         self.sums[node.index()] += coefficient;
     }
 
@@ -73,8 +82,17 @@ impl RowSum {
     #[inline(always)]
     pub fn add_marked<const N: usize>(&mut self, marks: &Marks, nodes: &[NodeId; N], coefficients: &[f64; N]) {
         self.make_room();
-        (0..MARKED).for_each(|k| self.mark(marks.first + u32::from(marks.further[k]), marks.bits[k]));
-        nodes.iter().zip(coefficients).for_each(|(node, coefficient)| self.sums[node.index()] += coefficient);
+        // What is looked up through `self` would be read again after every sum.
+        let Self { sums, bits, words, n_words } = self;
+        let (sums, bits, words) = (sums.as_mut_slice(), bits.as_mut_slice(), words.as_mut_slice());
+        let mut n = *n_words;
+        for marked in marks.words() {
+            mark(bits, words, &mut n, marked);
+        }
+        *n_words = n;
+        for (node, coefficient) in nodes.iter().zip(coefficients) {
+            sums[node.index()] += coefficient;
+        }
     }
 
     /// Adds to the coefficient of a node that is touched already.
@@ -92,32 +110,26 @@ impl RowSum {
         }
     }
 
-    /// Marks nodes as touched.
-    #[inline(always)]
-    fn mark(&mut self, word: u32, marked: u64) {
-        let bits = &mut self.bits[word as usize];
-        // Which are new cannot be foreseen: counted, not branched on.
-        self.words[self.n_words] = word;
-        self.n_words += usize::from(*bits == 0);
-        *bits |= marked;
-    }
-
     /// The words touched so far, in no order.
+    #[inline(always)]
     fn words(&self) -> &[u32] {
         &self.words[..self.n_words]
     }
 
     /// The coefficient of a node so far.
+    #[inline(always)]
     pub fn of(&self, node: NodeId) -> f64 {
         self.sums[node.index()]
     }
 
     /// Number of nodes touched so far.
+    #[inline(always)]
     pub fn n_nodes(&self) -> usize {
         self.words().iter().map(|&word| self.bits[word as usize].count_ones() as usize).sum()
     }
 
     /// No node touched so far comes before this one.
+    #[inline(always)]
     pub fn least(&self) -> NodeId {
         NodeId(self.words().iter().min().map_or(0, |word| word * BITS))
     }
@@ -130,19 +142,30 @@ impl RowSum {
     }
 
     /// Hands over (node, sum) by ascending number; begins the next row.
-    #[inline]
+    #[inline(always)]
     pub fn drain(&mut self, mut to: impl FnMut(NodeId, f64)) {
+        let (sums, all_bits) = (self.sums.as_mut_slice(), self.bits.as_mut_slice());
         let words = &mut self.words[..std::mem::take(&mut self.n_words)];
         words.sort_unstable();
         for &word in words.iter() {
-            let mut bits = std::mem::take(&mut self.bits[word as usize]);
+            let mut bits = std::mem::take(&mut all_bits[word as usize]);
             while bits != 0 {
                 let node = NodeId(word * BITS + bits.trailing_zeros());
                 bits &= bits - 1;
-                to(node, std::mem::take(&mut self.sums[node.index()]));
+                to(node, std::mem::take(&mut sums[node.index()]));
             }
         }
     }
+}
+
+/// Marks nodes of one word as touched.
+#[inline(always)]
+fn mark(bits: &mut [u64], words: &mut [u32], n_words: &mut usize, (word, marked): (u32, u64)) {
+    let bits = &mut bits[word as usize];
+    // Which are new cannot be foreseen: counted, not branched on.
+    words[*n_words] = word;
+    *n_words += usize::from(*bits == 0);
+    *bits |= marked;
 }
 
 #[cfg(test)]

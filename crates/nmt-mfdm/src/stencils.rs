@@ -42,6 +42,14 @@ impl StarParams {
         Self { order, size, choice: StarChoice::Nearest, smoothing: 0.0 }
     }
 
+    /// Rows of a star.
+    fn n_rows(&self, kept: Kept) -> usize {
+        match kept {
+            Kept::Derivatives => n_monomials(self.order) - self.first_row(),
+            Kept::Laplacian => 1,
+        }
+    }
+
     /// Monomial of the first row: 1 where the centre's value is met exactly, otherwise 0.
     fn first_row(&self) -> usize {
         usize::from(self.smoothing == 0.0)
@@ -100,7 +108,8 @@ pub(crate) enum Kept {
 pub struct Stencils {
     params: StarParams,
     kept: Kept,
-    size: usize, // nodes in most stars
+    n_rows: usize, // of a star
+    size: usize,   // nodes in most stars
     metric: Metric,
     of: Numbers,
     stars: Vec<Star>,   // shape (n,)
@@ -119,7 +128,7 @@ impl Kept {
     }
 }
 
-/// Where a star is, and how large.
+/// Where a star is, and how large: a line of the cache.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 struct Star {
@@ -128,6 +137,8 @@ struct Star {
     size: u32,    // nodes in it
     marks: Marks, // of its nodes, where it is of the size of most and has the rows of all derivatives; none otherwise
 }
+
+const _: () = assert!(size_of::<Star>() == 64);
 
 /// [`StarOutcome`] in 16 bytes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -349,8 +360,8 @@ impl Stencils {
     ) -> Self {
         let (n, params) = (numbers.len(), self.params);
         let all = &mut self;
-        (all.kept, all.size, all.of) = (kept, params.size, numbers);
-        let n_rows = all.n_rows();
+        let n_rows = params.n_rows(kept);
+        (all.kept, all.n_rows, all.size, all.of) = (kept, n_rows, params.size, numbers);
         // What was there is written over, but for stars of another size than most, to which nothing leads.
         all.nodes.resize(n * all.size, NodeId(0));
         all.rows.resize(n * n_rows * all.size, 0.0);
@@ -429,14 +440,6 @@ impl Stencils {
         self.params
     }
 
-    /// Rows of a star.
-    fn n_rows(&self) -> usize {
-        match self.kept {
-            Kept::Derivatives => n_monomials(self.params.order) - self.params.first_row(),
-            Kept::Laplacian => 1,
-        }
-    }
-
     /// Half as many nodes again as the star of `node` has.
     pub(crate) fn half_as_many_again(&self, node: NodeId) -> usize {
         half_as_many_again(self.stars[self.of.place(node)].size)
@@ -493,6 +496,7 @@ impl Stencils {
         Self {
             params,
             kept: Kept::Derivatives,
+            n_rows: params.n_rows(Kept::Derivatives),
             size: params.size,
             metric,
             of: Numbers::Consecutive(0..0),
@@ -533,7 +537,7 @@ impl Stencils {
     pub fn of(&self, node: NodeId) -> Stencil<'_> {
         let Star { start, size, radius, marks } = &self.stars[self.of.place(node)];
         let star = *start..*start + *size as usize;
-        let n_rows = self.n_rows();
+        let n_rows = self.n_rows;
         Stencil {
             nodes: &self.nodes[star.clone()],
             radius: *radius,

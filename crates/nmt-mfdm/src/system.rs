@@ -336,6 +336,7 @@ impl LinearSystem {
     }
 
     /// Adds a row to the equation under way, and begins the next one.
+    #[inline(always)]
     pub fn add_row(&mut self, roles: &Roles, row: &mut RowSum) {
         match roles.shift_from(row.least()) {
             Some(shift) => {

@@ -55,7 +55,13 @@ impl<W: Send> SystemMaker<W> {
             fill_pairs((rooms, &mut told), 1, |k, rooms, told| {
                 for (room, told) in rooms.iter_mut().zip(told) {
                     room.clear();
-                    *told = workers.with(&worker, |worker| piece(k).map(|k| equation(worker, k, room)).collect());
+                    *told = workers.with(&worker, |worker| {
+                        let mut of_piece = Vec::with_capacity(CHUNK);
+                        for k in piece(k) {
+                            of_piece.push(equation(worker, k, room)?);
+                        }
+                        Ok(of_piece)
+                    });
                 }
             });
             for (room, told) in rooms.iter().zip(told) {

@@ -85,8 +85,11 @@ impl EquationMaker<'_> {
         if let Some(of_value) = dirichlet_row(self.setting, node, &mut room.sum)? {
             return Ok(of_value);
         }
-        let rhs = self.sum_up(node, room)?;
-        Ok(Equation { row: room.sum.take(roles), rhs })
+        widest(
+            #[inline(always)]
+            || self.sum_up(node, room),
+        );
+        Ok(Equation { row: room.sum.take(roles), rhs: self.rhs(&room.hat)? })
     }
 
     /// Appends the equation of unknown `k`; tells how firmly it holds its node.
@@ -101,24 +104,30 @@ impl EquationMaker<'_> {
             system.push(&of_value);
             return Ok(Firmness { own, energy: 0.0 });
         }
-        let rhs = self.sum_up(node, room)?;
-        let own = room.sum.of(node);
-        system.add_row(roles, &mut room.sum);
-        system.end(rhs);
+        let own = widest(
+            #[inline(always)]
+            || {
+                self.sum_up(node, room);
+                let own = room.sum.of(node);
+                system.add_row(roles, &mut room.sum);
+                own
+            },
+        );
+        system.end(self.rhs(&room.hat)?);
         Ok(Firmness { own, energy: room.hat.energy() })
     }
 
-    /// Sums up the left side of the equation with a node's hat; its right side.
-    fn sum_up(&self, node: NodeId, room: &mut EquationRoom) -> Result<f64, MfdmError> {
-        let Frame { mesh, node_tris, source, fluxes, source_rule, .. } = self.setting.frame;
+    /// Sums up the left side of the equation with a node's hat.
+    #[inline(always)]
+    fn sum_up(&self, node: NodeId, room: &mut EquationRoom) {
         let EquationRoom { sum, gathered, hat } = room;
-        widest(
-            #[inline(always)]
-            || {
-                hat.become_of(node, mesh, node_tris);
-                self.weak.add(TestFunction::Hat(hat), gathered, sum);
-            },
-        );
+        hat.become_of(node, self.setting.frame.mesh, self.setting.frame.node_tris);
+        self.weak.add(TestFunction::Hat(hat), gathered, sum);
+    }
+
+    /// The right side of the equation with this hat.
+    fn rhs(&self, hat: &Hat) -> Result<f64, MfdmError> {
+        let Frame { mesh, source, fluxes, source_rule, .. } = self.setting.frame;
         source.with_hat(mesh, source_rule, fluxes, hat)
     }
 }

@@ -57,6 +57,7 @@ pub(crate) struct Gathered {
     nodes: Vec<NodeId>, // whose polynomials enter
     moments: Vec<f64>,  // what each contributes by its derivatives at its node, shape (n, n_monomials)
     spokes: Vec<Spoke>, // from the node of a hat, in slot 0, to the others; shape (n - 1,)
+    ends: Vec<usize>,   // the spoke of the last side of each element about it
     of_star: Vec<f64>,  // of one of these nodes
 }
 
@@ -72,6 +73,7 @@ impl Gathered {
         self.nodes.clear();
         self.moments.clear();
         self.spokes.clear();
+        self.ends.clear();
     }
 
     /// Place of the moments of a node, which are 0 at first.
@@ -86,30 +88,49 @@ impl Gathered {
         self.nodes.len() - 1
     }
 
-    /// Places for the moments of the node of a hat, in slot 0, and of the second node of each element around it, with the
-    /// spokes between.
+    /// Places for the moments of the node of a hat, in slot 0, and of the nodes around it, the second of each element first;
+    /// with the spokes between.
     #[inline(always)]
-    fn begin_hat<const N: usize>(&mut self, node: NodeId, elements: &[Element]) {
+    fn begin_hat<const N: usize>(&mut self, node: NodeId, hat: &Hat) {
+        let spoke =
+            |element: &Element, end: usize| Spoke { side: sub(element.corners[end], element.corners[0]), flow: 0.0 };
         self.nodes.push(node);
-        self.nodes.extend(elements.iter().map(|element| element.nodes[1]));
-        self.moments.resize(self.nodes.len() * N, 0.0);
-        let out = |element: &Element| sub(element.corners[1], element.corners[0]);
-        self.spokes.extend(elements.iter().map(|element| Spoke { side: out(element), flow: 0.0 }));
-    }
-
-    /// Adds what flows through the side from the node in slot `from` to that in `to`: `flow` times the mean of u, which blends
-    /// the polynomials of the two, along it.
-    #[inline(always)]
-    fn add_side<const P: usize, const N: usize>(&mut self, flow: f64, side: [f64; 2], [from, to]: [usize; 2]) {
-        let means = side_means::<P, N>(side);
-        let moments = self.moments.as_chunks_mut::<N>().0;
-        (0..N).for_each(|m| moments[from][m] += flow * means[m]);
-        let to = &mut moments[to];
-        let mut way_back = flow;
-        for d in 0..P + 1 {
-            (0..d + 1).for_each(|b| to[row(d - b, b)] += way_back * means[row(d - b, b)]);
-            way_back = -way_back;
+        for element in hat.elements() {
+            self.nodes.push(element.nodes[1]);
+            self.spokes.push(spoke(element, 1));
         }
+        for element in hat.elements() {
+            let last = element.nodes[2];
+            // The element that follows counter-clockwise has its spoke; at the boundary none does.
+            let end = hat.element_from(last).unwrap_or_else(|| {
+                self.nodes.push(last);
+                self.spokes.push(spoke(element, 2));
+                self.spokes.len() - 1
+            });
+            self.ends.push(end);
+        }
+        self.moments.resize(self.nodes.len() * N, 0.0);
+    }
+}
+
+/// Adds what flows through the side from the node in slot `from` to that in `to`: `flow` times the mean of u, which blends
+/// the polynomials of the two, along it.
+#[inline(always)]
+fn add_side<const P: usize, const N: usize>(
+    moments: &mut [[f64; N]],
+    flow: f64,
+    side: [f64; 2],
+    [from, to]: [usize; 2],
+) {
+    let means = side_means::<P, N>(side);
+    for (moment, mean) in moments[from].iter_mut().zip(&means) {
+        *moment += flow * mean;
+    }
+    let to = &mut moments[to];
+    let mut way_back = flow;
+    for d in 0..P + 1 {
+        (0..d + 1).for_each(|b| to[row(d - b, b)] += way_back * means[row(d - b, b)]);
+        way_back = -way_back;
     }
 }
 
@@ -198,46 +219,43 @@ impl<'a> WeakForm<'a> {
 
     fn gather_linear<const P: usize, const N: usize>(&self, element: &Element, g: [f64; 2], gathered: &mut Gathered) {
         let slots = element.nodes.map(|node| gathered.slot::<N>(node));
+        let moments = gathered.moments.as_chunks_mut::<N>().0;
         if self.is_exact::<P>() {
             // ∫∇u·g over a triangle is what flows along g through its sides.
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 let side = sub(element.corners[b], element.corners[a]);
-                gathered.add_side::<P, N>(cross(g, side), side, [slots[a], slots[b]]);
+                add_side::<P, N>(moments, cross(g, side), side, [slots[a], slots[b]]);
             }
         }
-        self.add_places::<P, N>(element, g, slots, gathered);
+        self.add_places::<P, N>(element, g, slots, moments);
     }
 
     #[inline(always)]
     fn gather_hat<const P: usize, const N: usize>(&self, hat: &Hat, gathered: &mut Gathered) {
         let elements = hat.elements();
         let Some(node) = elements.first().map(|element| element.nodes[0]) else { return };
-        gathered.begin_hat::<N>(node, elements);
-        for (k, element) in elements.iter().enumerate() {
-            let ([_, _, last], [at, from, to]) = (element.nodes, element.corners);
+        gathered.begin_hat::<N>(node, hat);
+        // What is looked up through `gathered` would be read again after every sum.
+        let (spokes, moments) = (gathered.spokes.as_mut_slice(), gathered.moments.as_chunks_mut::<N>().0);
+        for (k, (element, &end)) in elements.iter().zip(&gathered.ends).enumerate() {
+            let [at, from, to] = element.corners;
             let (opposite, factor) = (sub(to, from), -0.5 / element.area);
             // The gradient of the hat is normal to the opposite side, and 1 over the height.
             let flow = |side: [f64; 2]| factor * dot(opposite, side);
             let (out, back) = (sub(from, at), sub(to, at));
-            // The element that follows counter-clockwise has its spoke; at the boundary none does.
-            let end = hat.element_from(last).unwrap_or_else(|| {
-                gathered.spokes.push(Spoke { side: back, flow: 0.0 });
-                gathered.new_slot::<N>(last) - 1
-            });
-            gathered.spokes[k].flow += flow(out);
-            gathered.spokes[end].flow -= flow(back);
+            spokes[k].flow += flow(out);
+            spokes[end].flow -= flow(back);
             let slots = [k + 1, end + 1];
             if self.is_exact::<P>() {
-                gathered.add_side::<P, N>(flow(opposite), opposite, slots);
+                add_side::<P, N>(moments, flow(opposite), opposite, slots);
             }
             if !self.is_exact::<P>() || !of_triangle(&self.fluxes.slivers, element.triangle).is_empty() {
-                self.add_places::<P, N>(element, element.slopes()[0], [0, slots[0], slots[1]], gathered);
+                self.add_places::<P, N>(element, element.slopes()[0], [0, slots[0], slots[1]], moments);
             }
         }
         if self.is_exact::<P>() {
-            for k in 0..gathered.spokes.len() {
-                let Spoke { side, flow } = gathered.spokes[k];
-                gathered.add_side::<P, N>(flow, side, [0, k + 1]);
+            for (k, &Spoke { side, flow }) in spokes.iter().enumerate() {
+                add_side::<P, N>(moments, flow, side, [0, k + 1]);
             }
         }
     }
@@ -253,7 +271,7 @@ impl<'a> WeakForm<'a> {
         element: &Element,
         g: [f64; 2],
         slots: [usize; 3],
-        gathered: &mut Gathered,
+        moments: &mut [[f64; N]],
     ) {
         let points = self.rule.points.iter().zip(&self.rule.weights).filter(|_| !self.is_exact::<P>());
         let points = points.map(|(lambda, weight)| (*lambda, weight * element.area));
@@ -262,7 +280,7 @@ impl<'a> WeakForm<'a> {
         let slopes = element.slopes();
         for (a, slot) in slots.into_iter().enumerate() {
             let integrals = CornerIntegrals::<P, N>::of_places(element, a, points.clone().chain(beyond.clone()));
-            integrals.add_along(g, dot(g, slopes[a]), &mut gathered.moments.as_chunks_mut::<N>().0[slot]);
+            integrals.add_along(g, dot(g, slopes[a]), &mut moments[slot]);
         }
     }
 }
@@ -322,7 +340,9 @@ fn spread<const P: usize, const N: usize>(stencils: &Stencils, gathered: &mut Ga
 fn combined<const N: usize>(rows: &[[f64; N]], factors: &[f64]) -> [f64; N] {
     let mut total = [0.0; N];
     for (row, factor) in rows.iter().zip(factors) {
-        (0..N).for_each(|i| total[i] += factor * row[i]);
+        for (total, coefficient) in total.iter_mut().zip(row) {
+            *total += factor * coefficient;
+        }
     }
     total
 }
