@@ -142,8 +142,7 @@ impl NodalPolynomials {
         let mut areas = vec![0.0; n_nodes];
         for t in mesh.triangles() {
             let (nodes, area) = (mesh.tri_nodes()[t.index()], mesh.area(t));
-            let slopes = barycentric_gradients(mesh.corners(t));
-            let gradient = [0, 1].map(|d| (0..3).map(|a| values[nodes[a].index()] * slopes[a][d]).sum::<f64>());
+            let gradient = gradient_of_plane(mesh, t, |node| values[node.index()]);
             for node in nodes.map(NodeId::index) {
                 coefficients[3 * node + 1] += area * gradient[0];
                 coefficients[3 * node + 2] += area * gradient[1];
@@ -186,6 +185,35 @@ impl NodalPolynomials {
     pub fn scaled(mut self, factor: f64) -> Self {
         self.coefficients.iter_mut().for_each(|c| *c *= factor);
         self
+    }
+
+    /// Coefficients of flatter polynomials than that of `node`, with its value: its plane, the plane with the mean gradient of those
+    /// through the values at the corners of the triangles `around`, by area, and the value alone.
+    pub(crate) fn flatter(&self, mesh: &Mesh, node: NodeId, around: &[TriId]) -> [Vec<f64>; 3] {
+        let plane = |gradient: [f64; 2]| {
+            let mut coefficients = vec![0.0; n_monomials(self.order)];
+            coefficients[0] = self.coefficients(node)[0];
+            let slopes = self.slopes(node);
+            let linear = coefficients.iter_mut().skip(1).zip(gradient).zip(slopes);
+            linear.for_each(|((coefficient, slope), scale)| *coefficient = slope / scale);
+            coefficients
+        };
+        let area: f64 = around.iter().map(|&t| mesh.area(t)).sum();
+        let mut mean = [0.0; 2];
+        for &t in around {
+            let gradient = gradient_of_plane(mesh, t, |node| self.coefficients(node)[0]);
+            (0..2).for_each(|d| mean[d] += mesh.area(t) / area * gradient[d]);
+        }
+        [plane(self.at_node(node).gradient), plane(mean), plane([0.0; 2])]
+    }
+
+    /// Puts other coefficients in the place of those of a node; tells these.
+    pub(crate) fn replace(&mut self, node: NodeId, coefficients: &[f64]) -> Vec<f64> {
+        let n = n_monomials(self.order);
+        let own = &mut self.coefficients[node.index() * n..(node.index() + 1) * n];
+        let before = own.to_vec();
+        own.copy_from_slice(coefficients);
+        before
     }
 
     /// Order of what is blended.
@@ -317,14 +345,30 @@ impl NodalPolynomials {
     /// ∫F over the whole mesh, exact for the blend.
     pub fn volume(&self, mesh: &Mesh) -> f64 {
         let rule = RuleLanes::from(&self.rule());
-        let over = |triangle: TriId| {
-            let values = self.values_at(mesh, triangle, &rule);
-            let sums = rule.weights.iter().zip(values).fold(Lanes::default(), |sums, (weight, f)| sums + *weight * f);
-            mesh.area(triangle) * sums.sum()
-        };
-        let parts = map_chunks(0..mesh.n_triangles(), |piece| piece.map(|t| over(TriId::of(t))).collect::<Vec<f64>>());
+        let parts = map_chunks(0..mesh.n_triangles(), |piece| {
+            piece.map(|t| self.volume_over(mesh, &rule, TriId::of(t))).collect::<Vec<f64>>()
+        });
         parts.into_iter().flatten().sum()
     }
+
+    /// ∫F over some triangles.
+    pub(crate) fn volume_of(&self, mesh: &Mesh, triangles: &[TriId]) -> f64 {
+        let rule = RuleLanes::from(&self.rule());
+        triangles.iter().map(|&t| self.volume_over(mesh, &rule, t)).sum()
+    }
+
+    fn volume_over(&self, mesh: &Mesh, rule: &RuleLanes, triangle: TriId) -> f64 {
+        let values = self.values_at(mesh, triangle, rule);
+        let sums = rule.weights.iter().zip(values).fold(Lanes::default(), |sums, (weight, f)| sums + *weight * f);
+        mesh.area(triangle) * sums.sum()
+    }
+}
+
+/// The gradient of the plane through the values at the corners of a triangle.
+fn gradient_of_plane(mesh: &Mesh, triangle: TriId, value: impl Fn(NodeId) -> f64) -> [f64; 2] {
+    let slopes = barycentric_gradients(mesh.corners(triangle));
+    let values = mesh.tri_nodes()[triangle.index()].map(value);
+    [0, 1].map(|d| (0..3).map(|a| values[a] * slopes[a][d]).sum())
 }
 
 /// ∇λ of the three barycentric coordinates, constant on the triangle; 1/user's length unit.

@@ -13,6 +13,7 @@ use crate::error::MfdmError;
 use crate::gauss::six_points;
 use crate::hidden::Hidden;
 use crate::lanes::Lanes;
+use crate::overshoot::{flatten, has_large};
 use crate::parallel::map_chunks;
 use crate::params::SolveParams;
 use crate::post::torque;
@@ -22,7 +23,7 @@ use crate::solution::TorsionSolution;
 use crate::solve::Event;
 use crate::solver::LinearSolve;
 use crate::true_edges::{ALONG, Piece, Sample, visit_pieces};
-use crate::warping::{NodalWarping, StressFrame, Warping, elements_params, warping_params};
+use crate::warping::{NodalWarping, StressFrame, Stresses, Warping, elements_params, warping_params};
 use nmt_cloud::Section;
 use nmt_geom::point::{dot, sub};
 use nmt_geom::{LoopId, NodeId, Point, TriId};
@@ -109,7 +110,7 @@ pub fn estimate_observed(
     observer: &mut dyn FnMut(Event),
 ) -> Result<ErrorEstimate, MfdmError> {
     let case = Case { problem, mesh, section, params, solution };
-    case.estimate(&case.warping(&warping_params(params), observer)?, observer)
+    case.estimate(case.warping(&warping_params(params), observer)?, observer)
 }
 
 /// A torsion problem and its solution.
@@ -123,33 +124,77 @@ pub(crate) struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// The estimate by a warping function; where that leaves J in doubt, as it may at unresolved fillets and in thin walls, the
-    /// best one of those with the linear interpolant of the stress function, with the warping function of linear elements, and
-    /// with both: coarse clouds make polynomials overshoot, and any function gives bounds.
+    /// The estimate by a warping function; where that leaves J in doubt, as it may in thin walls and at unresolved features, the
+    /// best one of those with the linear interpolant of the stress function, with the warping function of linear elements and the polynomials
+    /// through its values, and with both: any function gives bounds.
     ///
     /// # Errors
     /// [`MfdmError::Curve`] where an edge has no length, [`MfdmError::Singular`] where a number is none.
-    pub fn estimate(&self, warping: &Warping, observer: &mut dyn FnMut(Event)) -> Result<ErrorEstimate, MfdmError> {
-        let mut best = self.bounds(&self.solution.field, warping)?;
+    pub fn estimate(&self, warping: Warping, observer: &mut dyn FnMut(Event)) -> Result<ErrorEstimate, MfdmError> {
+        let (mut best, warping) = self.without_overshoots(warping)?;
         if best.relative(self.solution.j) <= DOUBTFUL {
             return Ok(best);
         }
         let linear = NodalPolynomials::linear(self.mesh, &self.solution.f);
-        let by_elements = self.warping(&elements_params(self.params), observer).ok();
-        let recovered = &self.solution.field;
-        let others = [(&linear, Some(warping)), (recovered, by_elements.as_ref()), (&linear, by_elements.as_ref())];
-        for (field, warping) in others {
-            let other = warping.and_then(|warping| self.bounds(field, warping).ok());
-            best = other.filter(|other| other.j < best.j).unwrap_or(best);
+        let by_linear = self.bounds(&linear, &warping);
+        drop(warping);
+        let others = self.by_elements(&linear, observer).unwrap_or_default();
+        for other in by_linear.into_iter().chain(others) {
+            best = if other.j < best.j { other } else { best };
         }
         Ok(best)
     }
 
+    /// The estimates by the warping function of linear elements and by the polynomials through its values; `linear` is the linear interpolant of
+    /// the stress function.
+    fn by_elements(
+        &self,
+        linear: &NodalPolynomials,
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<Vec<ErrorEstimate>, MfdmError> {
+        let nodal = self.nodal_warping(&elements_params(self.params), observer)?;
+        let [polynomials] = recover(self.mesh, &warping_params(self.params), [&nodal.values], observer)?;
+        let plane = NodalPolynomials::linear(self.mesh, &nodal.values);
+        let warping = nodal.with_field(plane);
+        let mut found = vec![self.bounds(&self.solution.field, &warping)?, self.bounds(linear, &warping)?];
+        found.push(self.without_overshoots(Warping { field: polynomials, ..warping })?.0);
+        Ok(found)
+    }
+
+    /// The estimate by the recovered stress function and a warping function, without what overshoots where that is better; the warping function
+    /// without it.
+    fn without_overshoots(&self, warping: Warping) -> Result<(ErrorEstimate, Warping), MfdmError> {
+        let Self { mesh, solution, .. } = *self;
+        let both = Both { mesh, solution, field: &solution.field, stresses: warping.stresses() };
+        let (mut parts, volume) = (both.over_triangles(), solution.field.volume(mesh));
+        let best = self.bounds_of(&both, &parts, volume, warping.linear)?;
+        if !has_large(&best.indicators) {
+            return Ok((best, warping));
+        }
+        let Warping { field, frame, linear } = warping;
+        let (mut fields, rule) = ([solution.field.clone(), field], RuleLanes::from(&six_points()));
+        let changed = flatten(mesh, &mut fields, &best.indicators, |[v, w], triangle| {
+            let stresses = Stresses { field: w, frame: &frame };
+            Both { mesh, solution, field: v, stresses }.over(triangle, &rule).square
+        });
+        let [v, field] = fields;
+        let warping = Warping { field, frame, linear };
+        let both = Both { mesh, solution, field: &v, stresses: warping.stresses() };
+        changed.iter().for_each(|&triangle| parts[triangle.index()] = both.over(triangle, &rule));
+        let volume = volume + v.volume_of(mesh, &changed) - solution.field.volume_of(mesh, &changed);
+        let other = self.bounds_of(&both, &parts, volume, linear)?;
+        Ok((if other.j < best.j { other } else { best }, warping))
+    }
+
     fn warping(&self, params: &SolveParams, observer: &mut dyn FnMut(Event)) -> Result<Warping, MfdmError> {
-        let frame = StressFrame::of(self.mesh, self.solution);
-        let nodal = NodalWarping::solve(self.mesh, self.section, frame, params, None, observer)?;
+        let nodal = self.nodal_warping(params, observer)?;
         let [field] = recover(self.mesh, params, [&nodal.values], observer)?;
         Ok(nodal.with_field(field))
+    }
+
+    fn nodal_warping(&self, params: &SolveParams, observer: &mut dyn FnMut(Event)) -> Result<NodalWarping, MfdmError> {
+        let frame = StressFrame::of(self.mesh, self.solution);
+        NodalWarping::solve(self.mesh, self.section, frame, params, None, observer)
     }
 
     /// What a field of the stress function and a warping function say of each other.
@@ -157,10 +202,21 @@ impl Case<'_> {
     /// # Errors
     /// As [`Self::estimate`].
     fn bounds(&self, field: &NodalPolynomials, warping: &Warping) -> Result<ErrorEstimate, MfdmError> {
+        let Self { mesh, solution, .. } = *self;
+        let both = Both { mesh, solution, field, stresses: warping.stresses() };
+        self.bounds_of(&both, &both.over_triangles(), field.volume(mesh), warping.linear)
+    }
+
+    /// [`Self::bounds`] by the integrals over the triangles and ∫v over the polygon, in the solution's unit.
+    fn bounds_of(
+        &self,
+        both: &Both,
+        parts: &[Parts],
+        volume: f64,
+        linear: LinearSolve,
+    ) -> Result<ErrorEstimate, MfdmError> {
         let Self { problem, mesh, section, solution, .. } = *self;
-        let both = Both { mesh, solution, field, warping };
-        let beyond = Beyond::new(&both, section)?;
-        let parts = both.over_triangles();
+        let beyond = Beyond::new(both, section)?;
         let mut indicators: Vec<f64> = parts.iter().map(|own| own.square).collect();
         for &(triangle, [square, _]) in &beyond.slivers {
             indicators[triangle.index()] += square;
@@ -173,7 +229,7 @@ impl Case<'_> {
         // ∫∇v·(∇v − σ) is what 4∫v − ∫|∇v|² lies below 2∫v, here over the polygon.
         let (constants, areas): (Vec<f64>, Vec<f64>) =
             solution.holes.iter().map(|hole| (hole.f / solution.g_theta, hole.area)).unzip();
-        let low = torque(field.volume(mesh) / solution.g_theta, &constants, &areas) - product;
+        let low = torque(volume / solution.g_theta, &constants, &areas) - product;
         let j_bounds = [low - beyond.hidden, low + square + beyond.hidden];
         let rounding = f64::EPSILON * mesh.cloud().n_nodes() as f64;
         let j = j_bounds.iter().map(|bound| (bound - solution.j).abs()).fold(rounding * solution.j.abs(), f64::max);
@@ -188,7 +244,7 @@ impl Case<'_> {
         if numbers.iter().any(|number| !number.is_finite()) {
             return Err(MfdmError::Singular { n: mesh.cloud().n_nodes() });
         }
-        Ok(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear: warping.linear })
+        Ok(ErrorEstimate { j, j_bounds, torque, twist, tau_max, indicators, linear })
     }
 }
 
@@ -205,7 +261,7 @@ struct Both<'a> {
     solution: &'a TorsionSolution,
     /// v, in the solution's unit.
     field: &'a NodalPolynomials,
-    warping: &'a Warping,
+    stresses: Stresses<'a>,
 }
 
 impl Both<'_> {
@@ -213,7 +269,7 @@ impl Both<'_> {
     fn at(&self, triangle: TriId, p: Point) -> (f64, Point, Point) {
         let (v, gradient) = self.field.slope(self.mesh, triangle, p);
         let scale = 1.0 / self.solution.g_theta;
-        (v * scale, gradient.map(|slope| slope * scale), self.warping.stress_at(self.mesh, triangle, p))
+        (v * scale, gradient.map(|slope| slope * scale), self.stresses.at(self.mesh, triangle, p))
     }
 
     fn over_triangles(&self) -> Vec<Parts> {
@@ -226,7 +282,7 @@ impl Both<'_> {
 
     fn over(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
         let (v, sigma) =
-            (self.field.slopes_at(self.mesh, triangle, rule), self.warping.stresses_at(self.mesh, triangle, rule));
+            (self.field.slopes_at(self.mesh, triangle, rule), self.stresses.at_rule(self.mesh, triangle, rule));
         let (scale, area) = (1.0 / self.solution.g_theta, self.mesh.area(triangle));
         let [mut product, mut square] = [Lanes::default(); 2];
         for ((v, sigma), weight) in v.iter().zip(sigma).zip(rule.weights) {
@@ -241,7 +297,7 @@ impl Both<'_> {
     /// τ at a node by both, and their difference, for Gθ = 1.
     fn at_node(&self, node: NodeId) -> [f64; 3] {
         let v = self.solution.field.at_node(node).gradient.map(|slope| slope / self.solution.g_theta);
-        let sigma = self.warping.stress_at_node(self.mesh, node);
+        let sigma = self.stresses.at_node(self.mesh, node);
         let difference = sub(v, sigma);
         [v, sigma, difference].map(size)
     }

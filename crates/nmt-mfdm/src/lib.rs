@@ -49,6 +49,7 @@ mod mwls;
 mod one_star;
 mod operator;
 mod outflow;
+mod overshoot;
 mod parallel;
 mod params;
 mod patched;

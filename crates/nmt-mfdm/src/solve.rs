@@ -155,7 +155,7 @@ pub fn solve_estimated(
     observer(Event::Ended(Stage::Post));
     observer(Event::Begun(Stage::Estimate));
     let case = Case { problem, mesh, section, params, solution: &solution };
-    let estimate = warping.and_then(|warping| case.estimate(&warping, &mut within(observer)));
+    let estimate = warping.and_then(|warping| case.estimate(warping, &mut within(observer)));
     observer(Event::Ended(Stage::Estimate));
     Ok((solution, estimate))
 }

@@ -136,22 +136,38 @@ impl NodalWarping {
     }
 }
 
-/// The warping function of a section, made a field of stress.
+/// The warping function of a section, made a field.
 pub(crate) struct Warping {
-    field: NodalPolynomials,
-    frame: StressFrame,
+    /// w.
+    pub field: NodalPolynomials,
+    pub frame: StressFrame,
     /// How the linear system was solved.
     pub linear: LinearSolve,
 }
 
 impl Warping {
+    /// Its stresses.
+    pub fn stresses(&self) -> Stresses<'_> {
+        Stresses { field: &self.field, frame: &self.frame }
+    }
+}
+
+/// σ of a warping function.
+#[derive(Clone, Copy)]
+pub(crate) struct Stresses<'a> {
+    /// w.
+    pub field: &'a NodalPolynomials,
+    pub frame: &'a StressFrame,
+}
+
+impl Stresses<'_> {
     /// σ at `p` in `triangle`.
-    pub fn stress_at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
+    pub fn at(&self, mesh: &Mesh, triangle: TriId, p: Point) -> [f64; 2] {
         self.with_rotation(p, self.field.slope(mesh, triangle, p).1)
     }
 
     /// σ at the points of a rule on `triangle`.
-    pub fn stresses_at(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [[Lanes; 2]; 2] {
+    pub fn at_rule(&self, mesh: &Mesh, triangle: TriId, rule: &RuleLanes) -> [[Lanes; 2]; 2] {
         let places = rule.places(mesh.corners(triangle));
         let w = self.field.slopes_at(mesh, triangle, rule);
         from_fn(|k| {
@@ -161,7 +177,7 @@ impl Warping {
     }
 
     /// σ at a node, of its own polynomial.
-    pub fn stress_at_node(&self, mesh: &Mesh, node: NodeId) -> [f64; 2] {
+    pub fn at_node(&self, mesh: &Mesh, node: NodeId) -> [f64; 2] {
         self.with_rotation(mesh.xy()[node.index()], self.field.at_node(node).gradient)
     }
 

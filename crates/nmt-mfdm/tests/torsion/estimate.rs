@@ -305,3 +305,33 @@ fn a_cloud_too_coarse_for_polynomials_has_an_estimate_all_the_same() -> Result<(
     }
     Ok(())
 }
+
+#[test]
+fn holes_much_smaller_than_the_spacing_do_not_spoil_the_estimate() -> Result<(), Box<dyn Error>> {
+    let mut ratios = Vec::new();
+    // J by bounds 2e-10 apart, on clouds refined about the hole.
+    for (radius, j) in [(0.015, 0.457_336_809_6), (0.005, 0.457_360_419_7)] {
+        let hole = Outline::circle([0.6, 0.45], radius);
+        let section = Section { contour: Outline::rectangle([0.0, 0.0], [2.0, 1.0]), holes: vec![hole] };
+        let known = Known { name: "plate with a tiny hole", section, j, tau_max: None, grading: None };
+        for nodes in [[36, 19], [61, 31]] {
+            for (irregularity, seed) in [(0.0, 1), (0.25, 1), (0.25, 2), (0.25, 3)] {
+                let cloud = CloudParams { nodes, irregularity, seed, ..CloudParams::default() };
+                let mesh = Mesh::constrained(generate(&known.section, &cloud)?)?;
+                let (problem, params) = (TorsionProblem::default(), SolveParams::default());
+                let solution = solve(&problem, &mesh, &params)?;
+                let estimate = estimate(&problem, &mesh, &known.section, &params, &solution)?;
+                let context = format!("{radius} {nodes:?} {irregularity} {seed}");
+                let [low, high] = estimate.j_bounds;
+                assert!(low <= j && j <= high, "{context}: {low} {high}");
+                let error = (solution.j - j).abs();
+                assert!(error <= estimate.j, "{context}: {error} {}", estimate.j);
+                ratios.push(estimate.j / error);
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    // Those beyond are of solutions that are right by chance.
+    assert!(ratios[ratios.len() / 2] < 8.0, "{ratios:?}");
+    Ok(())
+}
