@@ -187,8 +187,8 @@ impl NodalPolynomials {
         self
     }
 
-    /// Coefficients of flatter polynomials than that of `node`, with its value: its plane, the plane with the mean gradient of those
-    /// through the values at the corners of the triangles `around`, by area, and the value alone.
+    /// Coefficients of flatter polynomials than that of `node`, with its value: its plane, the plane with the mean gradient, by
+    /// area, of those through the values at the corners of the triangles `around`, and the value alone.
     pub(crate) fn flatter(&self, mesh: &Mesh, node: NodeId, around: &[TriId]) -> [Vec<f64>; 3] {
         let plane = |gradient: [f64; 2]| {
             let mut coefficients = vec![0.0; n_monomials(self.order)];

@@ -125,8 +125,8 @@ pub(crate) struct Case<'a> {
 
 impl Case<'_> {
     /// The estimate by a warping function; where that leaves J in doubt, as it may in thin walls and at unresolved features, the
-    /// best one of those with the linear interpolant of the stress function, with the warping function of linear elements and the polynomials
-    /// through its values, and with both: any function gives bounds.
+    /// best one of those with the linear interpolant of the stress function, with the warping function of linear elements, with
+    /// the polynomials through its values, and with two of them: any function gives bounds.
     ///
     /// # Errors
     /// [`MfdmError::Curve`] where an edge has no length, [`MfdmError::Singular`] where a number is none.
@@ -145,24 +145,28 @@ impl Case<'_> {
         Ok(best)
     }
 
-    /// The estimates by the warping function of linear elements and by the polynomials through its values; `linear` is the linear interpolant of
-    /// the stress function.
+    /// The estimates by the warping function of linear elements and by the polynomials through its values; `linear` is the
+    /// linear interpolant of the stress function.
     fn by_elements(
         &self,
         linear: &NodalPolynomials,
         observer: &mut dyn FnMut(Event),
     ) -> Result<Vec<ErrorEstimate>, MfdmError> {
         let nodal = self.nodal_warping(&elements_params(self.params), observer)?;
-        let [polynomials] = recover(self.mesh, &warping_params(self.params), [&nodal.values], observer)?;
+        let polynomials = recover(self.mesh, &warping_params(self.params), [&nodal.values], observer);
         let plane = NodalPolynomials::linear(self.mesh, &nodal.values);
         let warping = nodal.with_field(plane);
-        let mut found = vec![self.bounds(&self.solution.field, &warping)?, self.bounds(linear, &warping)?];
-        found.push(self.without_overshoots(Warping { field: polynomials, ..warping })?.0);
+        let fields = [&self.solution.field, linear].into_iter();
+        let mut found: Vec<ErrorEstimate> = fields.filter_map(|v| self.bounds(v, &warping).ok()).collect();
+        if let Ok([field]) = polynomials {
+            let recovered = self.without_overshoots(Warping { field, ..warping });
+            found.extend(recovered.map(|(estimate, _)| estimate));
+        }
         Ok(found)
     }
 
-    /// The estimate by the recovered stress function and a warping function, without what overshoots where that is better; the warping function
-    /// without it.
+    /// The estimate by the recovered stress function and a warping function, without what overshoots where that is better; and
+    /// the warping function without it.
     fn without_overshoots(&self, warping: Warping) -> Result<(ErrorEstimate, Warping), MfdmError> {
         let Self { mesh, solution, .. } = *self;
         let both = Both { mesh, solution, field: &solution.field, stresses: warping.stresses() };

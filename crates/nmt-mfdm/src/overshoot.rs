@@ -1,9 +1,9 @@
 //! Polynomials that overshoot, flattened where the stress function and the warping function then agree better.
 //!
-//! At a hole or fillet much smaller than the spacing stars are as small as that, but triangles reach a whole spacing out: what is
-//! quadratic in a node's polynomial is there as many times too large as the square of the ratio. Any continuous v and w give
+//! At a hole or fillet much smaller than the spacing stars are as small as that, but triangles reach a whole spacing out: an
+//! error of what is quadratic in a node's polynomial grows by the square of the ratio on the way. Any continuous v and w give
 //! bounds of J ([`crate::estimate`]), so that where ∫|∇v − σ|² is largest the polynomial of a node may become its plane, the
-//! plane of the triangles around, or its value alone.
+//! mean plane of the triangles around, or its value alone.
 
 use crate::blend::NodalPolynomials;
 use nmt_geom::{NodeId, TriId};
@@ -24,8 +24,8 @@ pub(crate) fn has_large(squares: &[f64]) -> bool {
     large(squares).next().is_some()
 }
 
-/// Flattens polynomials of v and w, `fields`, where that makes `square` smaller: ∫|∇v − σ|² over a triangle, `squares` those of all triangles at
-/// first. Tells in which triangles they change, ascending.
+/// Flattens polynomials of v and w, `fields`, where that makes `square` smaller: ∫|∇v − σ|² over a triangle, `squares` those
+/// of all triangles at first. Tells in which triangles they change, ascending.
 pub(crate) fn flatten(
     mesh: &Mesh,
     fields: &mut [NodalPolynomials; 2],
