@@ -252,6 +252,19 @@ impl Case<'_> {
     }
 }
 
+/// Barycentric coordinates of a triangle's own corners.
+const WHOLE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Times that a triangle is parted beside a source.
+const MOST_HALVINGS: u32 = 6;
+
+/// A part of a triangle parted by the middles of its sides.
+fn quarters([a, b, c]: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 4] {
+    let middle = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| (p[k] + q[k]) / 2.0);
+    let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+}
+
 /// Integrals over a triangle.
 #[derive(Clone, Copy, Default)]
 struct Parts {
@@ -285,6 +298,28 @@ impl Both<'_> {
     }
 
     fn over(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
+        self.over_part(triangle, WHOLE, rule, MOST_HALVINGS)
+    }
+
+    /// Over the part of a triangle that has these barycentric coordinates at its corners, quarter by quarter where a source is near.
+    fn over_part(&self, triangle: TriId, part: [[f64; 3]; 3], rule: &RuleLanes, halvings: u32) -> Parts {
+        let corners = self.mesh.corners(triangle);
+        let place = |lambda: [f64; 3]| [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum());
+        if halvings == 0 || !self.stresses.frame.is_steep(part.map(place)) {
+            let is_whole = halvings == MOST_HALVINGS;
+            return if is_whole { self.by_rule(triangle, rule) } else { self.by_rule(triangle, &rule.of_part(part)) };
+        }
+        let mut sum = Parts::default();
+        for quarter in quarters(part) {
+            let own = self.over_part(triangle, quarter, rule, halvings - 1);
+            sum.product += own.product / 4.0;
+            sum.square += own.square / 4.0;
+        }
+        sum
+    }
+
+    /// By the mean over the points of a rule.
+    fn by_rule(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
         let (v, sigma) =
             (self.field.slopes_at(self.mesh, triangle, rule), self.stresses.at_rule(self.mesh, triangle, rule));
         let (scale, area) = (1.0 / self.solution.g_theta, self.mesh.area(triangle));

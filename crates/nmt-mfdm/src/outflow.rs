@@ -53,6 +53,13 @@ impl Outflow {
         holes.into_iter().flat_map(of_hole).collect()
     }
 
+    /// Whether it is nearer to a triangle's centre than 1½ of the longest side: its field changes there by more than a rule sees.
+    pub fn is_near(&self, [a, b, c]: [Point; 3]) -> bool {
+        let longest = [sub(b, a), sub(c, b), sub(a, c)].map(|side| dot(side, side)).into_iter().fold(0.0, f64::max);
+        let to_centre = sub([0, 1].map(|d| (a[d] + b[d] + c[d]) / 3.0), self.at);
+        dot(to_centre, to_centre) < 2.25 * longest
+    }
+
     /// Its field at a place.
     pub fn field(&self, p: Point) -> Point {
         let offset = sub(p, self.at);

@@ -34,6 +34,12 @@ impl From<&Rule> for RuleLanes {
 }
 
 impl RuleLanes {
+    /// The rule on a part of the triangle that has these barycentric coordinates at its corners.
+    pub fn of_part(&self, [a, b, c]: [[f64; 3]; 3]) -> Self {
+        let lambda = self.lambda.map(|[x, y, z]| from_fn(|k| x * a[k] + y * b[k] + z * c[k]));
+        Self { lambda, weights: self.weights }
+    }
+
     /// Its points on a triangle.
     pub fn places(&self, corners: [Point; 3]) -> [[Lanes; 2]; FOURS] {
         self.lambda.map(|[a, b, c]| from_fn(|d| a * corners[0][d] + b * corners[1][d] + c * corners[2][d]))

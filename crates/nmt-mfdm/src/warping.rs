@@ -83,6 +83,11 @@ impl StressFrame {
         self.outflows.iter().map(|outflow| outflow.field(p)).fold([-x, -y], add)
     }
 
+    /// Whether it changes within a triangle by more than a rule sees.
+    pub fn is_steep(&self, corners: [Point; 3]) -> bool {
+        self.outflows.iter().any(|outflow| outflow.is_near(corners))
+    }
+
     /// [`Self::stress`] at four places.
     fn stress_at(&self, [x, y]: [Lanes; 2]) -> [Lanes; 2] {
         let about = [Lanes::all(self.centre[0]) - x, Lanes::all(self.centre[1]) - y];
