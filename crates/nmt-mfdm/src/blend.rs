@@ -330,10 +330,11 @@ impl NodalPolynomials {
     /// Integral of a quantity of the blend over a triangle by `rule`.
     pub fn integrate(&self, mesh: &Mesh, triangle: TriId, rule: &Rule, of: impl Fn(&FieldValue) -> f64) -> f64 {
         let corners = mesh.corners(triangle);
-        let weighted = rule.points.iter().zip(&rule.weights).map(|(lambda, weight)| {
-            let at = |d: usize| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>();
-            weight * of(&self.blend(mesh, triangle, [at(0), at(1)]))
-        });
+        let weighted = rule
+            .points
+            .iter()
+            .zip(&rule.weights)
+            .map(|(lambda, weight)| weight * of(&self.blend(mesh, triangle, place(corners, *lambda))));
         mesh.area(triangle) * weighted.sum::<f64>()
     }
 
@@ -364,8 +365,14 @@ impl NodalPolynomials {
     }
 }
 
+/// The place with these barycentric coordinates.
+#[inline]
+pub(crate) fn place(corners: [Point; 3], lambda: [f64; 3]) -> Point {
+    [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum())
+}
+
 /// The gradient of the plane through the values at the corners of a triangle.
-fn gradient_of_plane(mesh: &Mesh, triangle: TriId, value: impl Fn(NodeId) -> f64) -> [f64; 2] {
+pub(crate) fn gradient_of_plane(mesh: &Mesh, triangle: TriId, value: impl Fn(NodeId) -> f64) -> [f64; 2] {
     let slopes = barycentric_gradients(mesh.corners(triangle));
     let values = mesh.tri_nodes()[triangle.index()].map(value);
     [0, 1].map(|d| (0..3).map(|a| values[a] * slopes[a][d]).sum())

@@ -7,7 +7,7 @@
 //! v does not quite vanish between the boundary's nodes: Green's formula gives what that changes, but for a product of two
 //! errors.
 
-use crate::blend::NodalPolynomials;
+use crate::blend::{NodalPolynomials, place};
 use crate::boundary_value::recover;
 use crate::error::MfdmError;
 use crate::gauss::six_points;
@@ -183,6 +183,9 @@ impl Case<'_> {
         });
         let [v, field] = fields;
         let warping = Warping { field, frame, linear };
+        if changed.is_empty() {
+            return Ok((best, warping));
+        }
         let both = Both { mesh, solution, field: &v, stresses: warping.stresses() };
         changed.iter().for_each(|&triangle| parts[triangle.index()] = both.over(triangle, &rule));
         let volume = volume + v.volume_of(mesh, &changed) - solution.field.volume_of(mesh, &changed);
@@ -298,16 +301,19 @@ impl Both<'_> {
     }
 
     fn over(&self, triangle: TriId, rule: &RuleLanes) -> Parts {
-        self.over_part(triangle, WHOLE, rule, MOST_HALVINGS)
+        if self.stresses.frame.is_steep(self.mesh.corners(triangle)) {
+            self.over_part(triangle, WHOLE, rule, MOST_HALVINGS)
+        } else {
+            self.by_rule(triangle, rule)
+        }
     }
 
-    /// Over the part of a triangle that has these barycentric coordinates at its corners, quarter by quarter where a source is near.
+    /// Over the part of a triangle that has these barycentric coordinates at its corners, quarter by quarter where a source is
+    /// near.
     fn over_part(&self, triangle: TriId, part: [[f64; 3]; 3], rule: &RuleLanes, halvings: u32) -> Parts {
         let corners = self.mesh.corners(triangle);
-        let place = |lambda: [f64; 3]| [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum());
-        if halvings == 0 || !self.stresses.frame.is_steep(part.map(place)) {
-            let is_whole = halvings == MOST_HALVINGS;
-            return if is_whole { self.by_rule(triangle, rule) } else { self.by_rule(triangle, &rule.of_part(part)) };
+        if halvings == 0 || !self.stresses.frame.is_steep(part.map(|lambda| place(corners, lambda))) {
+            return self.by_rule(triangle, &rule.of_part(part));
         }
         let mut sum = Parts::default();
         for quarter in quarters(part) {

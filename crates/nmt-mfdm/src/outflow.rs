@@ -4,9 +4,8 @@
 //! hole, ∇F has another flow through its edge; sources within the hole make up for it, without divergence in the material. They
 //! are as far from the edge as they can be, and many in a long hole: what they do at the edge, the warping function has to undo.
 
-use crate::blend::NodalPolynomials;
+use crate::blend::{NodalPolynomials, gradient_of_plane};
 use crate::circulation::hole_area;
-use crate::element::Element;
 use crate::gauss::six_points;
 use crate::lanes::Lanes;
 use crate::problem::HoleCondition;
@@ -22,6 +21,9 @@ use std::f64::consts::TAU;
 /// Layers of triangles about a hole over which its flow is averaged, at most. Beside the corners of a hole the recovered ∇F is at its
 /// worst: taken on the edge alone, the flow is so far off that it makes most of the estimate.
 const MOST_LAYERS: u32 = 50;
+
+/// Longest sides of a triangle.
+const NEAR: f64 = 1.5;
 
 /// The field strength·(r − at)/|r − at|² of a source, of which 2π·strength flows out of its hole.
 #[derive(Clone, Copy, Debug)]
@@ -53,11 +55,12 @@ impl Outflow {
         holes.into_iter().flat_map(of_hole).collect()
     }
 
-    /// Whether it is nearer to a triangle's centre than 1½ of the longest side: its field changes there by more than a rule sees.
+    /// Whether it is nearer to a triangle's centre than [`NEAR`] of the longest side: its field changes there by more than a rule
+    /// sees.
     pub fn is_near(&self, [a, b, c]: [Point; 3]) -> bool {
         let longest = [sub(b, a), sub(c, b), sub(a, c)].map(|side| dot(side, side)).into_iter().fold(0.0, f64::max);
         let to_centre = sub([0, 1].map(|d| (a[d] + b[d] + c[d]) / 3.0), self.at);
-        dot(to_centre, to_centre) < 2.25 * longest
+        dot(to_centre, to_centre) < NEAR * NEAR * longest
     }
 
     /// Its field at a place.
@@ -107,15 +110,14 @@ impl Ramp {
         let triangles: BTreeSet<TriId> = self.0.keys().flat_map(|node| node_tris.around(*node)).copied().collect();
         let rule = RuleLanes::from(&six_points());
         let through = |t: TriId| {
-            let element = Element::new(mesh, t);
-            let v = element.nodes.map(|node| self.0.get(&node).copied().unwrap_or(0.0));
-            let slopes = element.slopes();
-            let slope = [0, 1].map(|d| (0..3).map(|a| v[a] * slopes[a][d]).sum::<f64>());
+            let height = |node: NodeId| self.0.get(&node).copied().unwrap_or(0.0);
+            let slope = gradient_of_plane(mesh, t, height);
             let mut sum = Lanes::default();
             for (four, weight) in field.slopes_at(mesh, t, &rule).iter().zip(rule.weights) {
                 sum += weight * (four.gradient[0] * slope[0] + four.gradient[1] * slope[1]);
             }
-            element.area * (2.0 * v.iter().sum::<f64>() / 3.0 - sum.sum() / g_theta)
+            let heights = mesh.tri_nodes()[t.index()].map(height);
+            mesh.area(t) * (2.0 * heights.iter().sum::<f64>() / 3.0 - sum.sum() / g_theta)
         };
         triangles.into_iter().map(through).sum()
     }

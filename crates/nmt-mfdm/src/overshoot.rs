@@ -10,7 +10,7 @@ use nmt_geom::{NodeId, TriId};
 use nmt_tri::{Mesh, NodeTris};
 use std::collections::BTreeSet;
 
-/// Triangles with at least this part of the whole are looked at.
+/// Triangles with more than this part of the whole are looked at.
 const SHARE: f64 = 0.02;
 
 /// Times that they are: what is large is small when what was larger is mended.
@@ -99,13 +99,13 @@ mod tests {
         let rule = RuleLanes::from(&six_points());
         // Of the difference of both gradients.
         let square = |[v, w]: &[NodalPolynomials; 2], t: TriId| {
-            let pairs = v.slopes_at(&mesh, t, &rule).into_iter().zip(w.slopes_at(&mesh, t, &rule)).zip(rule.weights);
-            let of_pair = |sum: Lanes, ((v, w), weight): ((_, _), Lanes)| {
-                let (v, w): (crate::quadrature::AtFour, crate::quadrature::AtFour) = (v, w);
+            let mut sum = Lanes::default();
+            let fours = v.slopes_at(&mesh, t, &rule).into_iter().zip(w.slopes_at(&mesh, t, &rule));
+            for ((v, w), weight) in fours.zip(rule.weights) {
                 let [x, y] = [0, 1].map(|d| v.gradient[d] - w.gradient[d]);
-                sum + weight * (x * x + y * y)
-            };
-            mesh.area(t) * pairs.fold(Lanes::default(), of_pair).sum()
+                sum += weight * (x * x + y * y);
+            }
+            mesh.area(t) * sum.sum()
         };
         let squares = |fields: &[NodalPolynomials; 2]| mesh.triangles().map(|t| square(fields, t)).collect::<Vec<_>>();
         for field in fields.into_iter().filter(|field| field.blended_order() >= 2) {

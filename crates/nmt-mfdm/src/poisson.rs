@@ -1,6 +1,6 @@
 //! Poisson problems with data of the user's: ∇²u = f, u = g or ∂u/∂n = q on the edges; and the error against a known u.
 
-use crate::blend::{FieldValue, NodalPolynomials};
+use crate::blend::{FieldValue, NodalPolynomials, place};
 use crate::boundary_value::{Discrete, solve_discrete};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
@@ -204,7 +204,7 @@ impl PoissonSolution {
             for t in piece.map(TriId::of) {
                 let corners = mesh.corners(t);
                 for (lambda, weight) in rule.points.iter().zip(&rule.weights) {
-                    let p = [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>());
+                    let p = place(corners, *lambda);
                     let Compared { error, size } = inside(&self.field.blend(mesh, t, p), p);
                     sums[0] += weight * mesh.area(t) * error * error;
                     sums[1] += weight * mesh.area(t) * size * size;

@@ -142,6 +142,7 @@ fn monomials<const ORDER: usize>([h, k]: [Lanes; 2]) -> [Lanes; MAX_MONOMIALS] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blend::place;
     use crate::blend::tests::fields_of_all_orders;
     use crate::gauss::{seven_points, six_points};
 
@@ -155,7 +156,7 @@ mod tests {
                 let (corners, fours) = (mesh.corners(t), field.slopes_at(&mesh, t, &lanes));
                 let values = field.values_at(&mesh, t, &lanes);
                 for (k, lambda) in rule.points.iter().enumerate() {
-                    let p = [0, 1].map(|d| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>());
+                    let p = place(corners, *lambda);
                     let (value, gradient) = field.slope(&mesh, t, p);
                     let (four, lane) = (fours[k / WIDTH], k % WIDTH);
                     let close = |x: f64, y: f64| (x - y).abs() <= 1e-12 * (1.0 + x.abs()); // rounding

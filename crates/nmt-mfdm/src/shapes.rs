@@ -2,7 +2,7 @@
 //! eq. (18) \[D13\].
 
 use crate::basis::{MAX_MONOMIALS, monomials, n_monomials, row};
-use crate::blend::barycentric_gradients;
+use crate::blend::{barycentric_gradients, place};
 use crate::error::MfdmError;
 use crate::mwls::{MAX_CONDITION, Mwls};
 use crate::problem::Trial;
@@ -125,7 +125,7 @@ impl<'a> ShapeFinder<'a> {
         let corners = mesh.corners(triangle);
         let inside = barycentric(corners, p).map(|l| l.max(0.0));
         let total: f64 = inside.iter().sum();
-        let p = [0, 1].map(|d| (0..3).map(|a| inside[a] / total * corners[a][d]).sum::<f64>());
+        let p = place(corners, inside.map(|l| l / total));
         let metric = surroundings.metric();
         let StarParams { order, size, smoothing, .. } = params;
         let mut best: Option<(f64, usize)> = None;

@@ -3,6 +3,7 @@
 //! The left side of the variational form (v a hat) and of the circulation on holes (v one around a hole) alike.
 
 use crate::basis::{MAX_MONOMIALS, MAX_ORDER, n_monomials, row};
+use crate::blend::place;
 use crate::element::{CornerIntegrals, Element, side_means};
 use crate::error::MfdmError;
 use crate::flux::Fluxes;
@@ -355,9 +356,7 @@ pub(crate) fn places<'m>(
     triangle: TriId,
 ) -> impl Iterator<Item = ([f64; 2], f64)> + 'm {
     let (corners, area) = (mesh.corners(triangle), mesh.area(triangle));
-    let own = rule.points.iter().zip(&rule.weights).map(move |(lambda, weight)| {
-        let at = |d: usize| (0..3).map(|a| lambda[a] * corners[a][d]).sum::<f64>();
-        ([at(0), at(1)], weight * area)
-    });
+    let own =
+        rule.points.iter().zip(&rule.weights).map(move |(lambda, weight)| (place(corners, *lambda), weight * area));
     own.chain(of_triangle(&fluxes.slivers, triangle).iter().map(|sample| (sample.at, sample.weight)))
 }
