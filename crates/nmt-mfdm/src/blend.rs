@@ -76,7 +76,7 @@ impl NodalPolynomials {
         }
         let n = n_monomials(params.order);
         let n_nodes = surroundings.xy().len();
-        let StarParams { order, size, choice, smoothing } = params;
+        let StarParams { order, size, choice, smoothing, evening } = params;
         let demand = Demand {
             order,
             size,
@@ -84,6 +84,7 @@ impl NodalPolynomials {
             flattening: smoothing,
             negative_diagonal: false,
             slopes: crate::slopes::Slopes::Free,
+            evening,
         };
         let part = |piece: Range<usize>| {
             let mut stars = SoundStars::new(surroundings, nearest, choice);

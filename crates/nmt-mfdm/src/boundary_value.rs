@@ -12,6 +12,7 @@ use crate::one_star::NodeStar;
 use crate::operator::Operator;
 use crate::params::SolveParams;
 use crate::problem::{Formulation, Test, Trial};
+use crate::repair::EVEN;
 use crate::shapes::TrialSpace;
 use crate::slopes::KnownSlopes;
 use crate::solve::{Event, Stage};
@@ -111,7 +112,7 @@ pub(crate) fn nodal_solution(
         let assembled = match from {
             Some(operator) => {
                 observer(Event::Begun(Stage::Assemble));
-                let stars = params.star_params(mesh.cloud(), &around.surroundings.metric())?;
+                let stars = stars_of_equations(params, around, &roles)?;
                 operator.equations(frame, (around.surroundings, around.nearest), stars, &rule).map(Assembled::of)
             }
             None => Assembly { frame, around, params, rule: &rule }.assemble(observer),
@@ -201,7 +202,7 @@ impl Assembly<'_> {
     }
 
     fn star_params(&self) -> Result<StarParams, MfdmError> {
-        self.params.star_params(self.frame.mesh.cloud(), &self.around.surroundings.metric())
+        stars_of_equations(self.params, self.around, self.frame.roles)
     }
 
     fn places(&self) -> (&Surroundings<'_>, &Nearest<'_>) {
@@ -251,6 +252,7 @@ impl Assembly<'_> {
                 size: stars.size,
                 choice: params.star_choice(mesh.cloud()),
                 smoothing: params.smoothing,
+                evening: EVEN,
             },
         };
         let weak = match params.formulation {
@@ -268,6 +270,14 @@ impl Assembly<'_> {
         let stencils = (!interpolates(params)).then_some(stencils);
         Ok(Assembled { system, equations, stars, used_stars, smoothing: stencils, holds: Vec::new() })
     }
+}
+
+/// The stars of equations: where boundary nodes are unknowns, nothing holds the values on a small hole.
+fn stars_of_equations(params: &SolveParams, around: Around, roles: &Roles) -> Result<StarParams, MfdmError> {
+    let cloud = around.mesh.cloud();
+    let stars = params.star_params(cloud, &around.surroundings.metric())?;
+    let is_held = roles.n_unknowns == cloud.n_interior();
+    Ok(if is_held { stars } else { StarParams { evening: EVEN, ..stars } })
 }
 
 /// What a flux at a node makes known of the gradient there, in stretched coordinates.

@@ -40,7 +40,7 @@ pub struct NodeStar {
     pub node: NodeId,
     /// Nodes asked for, the centre included.
     pub asked: usize,
-    /// How they are chosen, unless only the other choice gives a sound star.
+    /// How they are chosen, unless only the other choice gives a sound star, or the nearest are mostly those of a hole smaller than the spacing.
     pub choice: StarChoice,
     /// What it came to: order, condition, enlarged or not, hidden nodes.
     pub outcome: StarOutcome,
@@ -112,13 +112,15 @@ impl NodeStar {
         let (stencil, outcome) = (stencils.of(node), stencils.outcome(node));
         let (places, stretch) = (surroundings.stretched(), surroundings.metric().stretch());
         let stretched = |other: NodeId| distance(places[other.index()], places[node.index()]);
+        // The centre's value is met where that was asked for, whatever the weights of the others.
+        let g = |other: NodeId| if other == node { stars.smoothing } else { stars.smoothing.max(outcome.flattening) };
         let member = |(k, &other): (usize, &NodeId)| {
             let part = |m: usize, d: usize| stencil.row(m)[k] * (stretch[d] / stencil.radius).powi(2);
             let rho = stretched(other) / stencil.radius;
             StarMember {
                 node: other,
                 distance: distance(cloud.xy()[other.index()], cloud.xy()[node.index()]),
-                weight: weight(rho * rho, stars.smoothing, outcome.order),
+                weight: weight(rho * rho, g(other), outcome.order),
                 laplacian: (outcome.order >= 2).then(|| part(row(2, 0), 0) + part(row(0, 2), 1)),
             }
         };

@@ -4,6 +4,7 @@ use crate::basis::{MAX_ORDER, n_monomials};
 use crate::error::MfdmError;
 use crate::gauss::Rule;
 use crate::problem::{Formulation, Test, Trial};
+use crate::repair::{EVEN, EVEN_WHERE_HELD};
 use crate::solver::Solver;
 use crate::star::{StarChoice, default_star};
 use crate::stencils::StarParams;
@@ -115,6 +116,7 @@ impl SolveParams {
             Some(star) => star,
             None => metric.star_size(default_star(order)).min(n_nodes),
         };
-        Ok(StarParams { order, size, choice: self.star_choice(cloud), smoothing: self.smoothing })
+        let evening = if self.formulation == Formulation::Variational { EVEN_WHERE_HELD } else { EVEN };
+        Ok(StarParams { order, size, choice: self.star_choice(cloud), smoothing: self.smoothing, evening })
     }
 }

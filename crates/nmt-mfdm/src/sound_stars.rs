@@ -195,8 +195,10 @@ impl<'a> SoundStars<'a> {
                 Wanted::Polynomials(_) => true, // it has no rows to tell
             }
         };
-        let outcome = StarOutcome { order: demand.order, enlarged: false, hidden, condition, wrong_sign };
-        (is_sound && !wrong_sign).then_some(outcome)
+        let (order, flattening) = (demand.order, 0.0);
+        let outcome = StarOutcome { order, enlarged: false, hidden, condition, wrong_sign, flattening };
+        let is_clumped = self.finder.surroundings().is_clumped(&self.stars[lane], self.quartet.radius(lane));
+        (is_sound && !wrong_sign && !is_clumped).then_some(outcome)
     }
 
     /// Copies what was computed of a member into `values`.

@@ -4,7 +4,7 @@ use crate::basis::{n_monomials, row};
 use crate::diagnostics::UsedStars;
 use crate::error::MfdmError;
 use crate::parallel::map_owned;
-use crate::repair::{Demand, StarOutcome};
+use crate::repair::{Demand, EVEN, StarOutcome};
 use crate::row_sum::Marks;
 use crate::slopes::{KnownSlopes, Slopes};
 use crate::solve::Event;
@@ -34,12 +34,15 @@ pub struct StarParams {
     pub choice: StarChoice,
     /// g of the weight; 0 meets the centre's value exactly.
     pub smoothing: f64,
+    /// g of the weights where a hole smaller than the spacing makes a clump of nodes in the star, which then come from all sides
+    /// \[D18\].
+    pub evening: f64,
 }
 
 impl StarParams {
     /// The nearest `size` nodes, interpolating.
     pub fn nearest(order: usize, size: usize) -> Self {
-        Self { order, size, choice: StarChoice::Nearest, smoothing: 0.0 }
+        Self { order, size, choice: StarChoice::Nearest, smoothing: 0.0, evening: EVEN }
     }
 
     /// Rows of a star.
@@ -148,19 +151,23 @@ pub(crate) struct Outcome {
     order: u8,
     enlarged: bool,
     wrong_sign: bool,
+    hundredths: u8, // of the g of flatter weights, or 0
 }
 
 impl From<StarOutcome> for Outcome {
     fn from(outcome: StarOutcome) -> Self {
-        let StarOutcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
-        Self { condition, hidden: u32::try_from(hidden).unwrap_or(u32::MAX), order: order as u8, enlarged, wrong_sign }
+        let StarOutcome { order, enlarged, hidden, condition, wrong_sign, flattening } = outcome;
+        let hidden = u32::try_from(hidden).unwrap_or(u32::MAX);
+        let hundredths = (100.0 * flattening).round() as u8;
+        Self { condition, hidden, order: order as u8, enlarged, wrong_sign, hundredths }
     }
 }
 
 impl From<Outcome> for StarOutcome {
     fn from(outcome: Outcome) -> Self {
-        let Outcome { order, enlarged, hidden, condition, wrong_sign } = outcome;
-        Self { order: order.into(), enlarged, hidden: hidden as usize, condition, wrong_sign }
+        let Outcome { condition, hidden, order, enlarged, wrong_sign, hundredths } = outcome;
+        let flattening = f64::from(hundredths) / 100.0;
+        Self { order: order.into(), enlarged, hidden: hidden as usize, condition, wrong_sign, flattening }
     }
 }
 
@@ -601,10 +608,10 @@ fn demand_of(
     known: Option<&KnownSlopes>,
     size: usize,
 ) -> Demand {
-    let StarParams { order, smoothing, .. } = params;
+    let StarParams { order, smoothing, evening, .. } = params;
     let negative_diagonal = node.index() >= surroundings.n_boundary() || known.is_some();
     let slopes = known.map_or(Slopes::Free, |known| known.slopes);
-    Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes }
+    Demand { order, size, smoothing, flattening: smoothing, negative_diagonal, slopes, evening }
 }
 
 /// Half as many nodes again.

@@ -4,8 +4,9 @@
 use crate::visibility::Visibility;
 use nmt_cloud::{Cloud, Nearest};
 use nmt_geom::tol::SAME_POINT_REL;
-use nmt_geom::{NodeId, Point};
+use nmt_geom::{LoopId, NodeId, Point};
 use std::borrow::Cow;
+use std::f64::consts::PI;
 
 /// Spacings whose ratio is at most this count as equal, and distances are plain.
 ///
@@ -90,7 +91,28 @@ pub struct Surroundings<'a> {
     stretched: Cow<'a, [Point]>,
     metric: Metric,
     visibility: Visibility,
+    clump_from: Vec<f64>, // shape (n_boundary,), see [`Surroundings::is_clumped`]
     n_boundary: usize,
+}
+
+/// A hole is a clump of nodes to stars whose nodes are spaced by this part of its extent and more.
+///
+/// Measured on a plate of 25 to 100 nodes across with one hole, on two with 128 holes, and on the sections of the verification,
+/// which have no such hole: 0.7 leaves none of the largest errors, 0.5 gains nothing more and 1 leaves some.
+const CLUMP: f64 = 0.7;
+
+/// For every boundary node the spacing of a star from which on its hole is a clump in it; ∞ on the contour.
+fn clump_from(cloud: &Cloud, stretched: &[Point]) -> Vec<f64> {
+    let mut from = vec![f64::INFINITY; cloud.n_boundary()];
+    for hole in 1..cloud.boundary().n_loops() {
+        let nodes = cloud.boundary().loop_segments(LoopId::of(hole)).iter().map(|segment| segment.from.index());
+        let extent = [0, 1].map(|d| {
+            let along = nodes.clone().map(|node| stretched[node][d]);
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        });
+        nodes.for_each(|node| from[node] = CLUMP * extent[0].max(extent[1]));
+    }
+    from
 }
 
 impl<'a> Surroundings<'a> {
@@ -101,7 +123,9 @@ impl<'a> Surroundings<'a> {
             [1.0, 1.0] => Cow::Borrowed(cloud.xy()),
             _ => cloud.xy().iter().map(|p| metric.stretched(*p)).collect(),
         };
-        Self { xy: cloud.xy(), stretched, metric, visibility: Visibility::new(cloud), n_boundary: cloud.n_boundary() }
+        let clump_from = clump_from(cloud, &stretched);
+        let (visibility, n_boundary) = (Visibility::new(cloud), cloud.n_boundary());
+        Self { xy: cloud.xy(), stretched, metric, visibility, clump_from, n_boundary }
     }
 
     /// An index of the nodes by their stretched coordinates.
@@ -127,6 +151,19 @@ impl<'a> Surroundings<'a> {
     /// The metric.
     pub fn metric(&self) -> Metric {
         self.metric
+    }
+
+    /// Whether two nodes or more of a star, ascending, are those of a hole smaller than its nodes are spaced: most of the nearest
+    /// nodes then lie on one side, and all but at one place.
+    #[inline]
+    pub(crate) fn is_clumped(&self, star: &[NodeId], radius: f64) -> bool {
+        // Most stars have no node on the boundary.
+        if star.get(1).is_none_or(|node| node.index() >= self.n_boundary) {
+            return false;
+        }
+        let spacing = radius * (PI / star.len() as f64).sqrt();
+        let on_boundary = star.iter().take_while(|node| node.index() < self.n_boundary);
+        on_boundary.filter(|node| self.clump_from[node.index()] < spacing).count() >= 2
     }
 
     /// True where nothing hides nodes within the stretched distance `radius` of `at`: stretching only lengthens.

@@ -127,6 +127,10 @@ impl<'a> StarView<'a> {
             _ => "absent: no second derivative at this order",
         };
         let hidden = star.hidden.len();
+        if outcome.flattening > 0.0 {
+            let why = "from all sides, since steep weights of the nearest nodes alone left it unsound";
+            lines.push(format!("weights flattened to g = {}, nodes {why}", outcome.flattening));
+        }
         lines.push(format!("{hidden} hidden {} passed over", if hidden == 1 { "node" } else { "nodes" }));
         lines.push(format!("own coefficient in the Laplacian {sign}"));
         if params.formulation == Formulation::Local && on_boundary {

@@ -6,8 +6,8 @@ use nmt_curve::Outline;
 use nmt_geom::point::distance;
 use nmt_geom::{NodeId, Point, segment};
 use nmt_mfdm::{
-    NodeStar, SolveParams, StarChoice, StarFinder, StarParams, Stencils, Surroundings, TorsionProblem, n_monomials,
-    row, solve,
+    Formulation, NodeStar, SolveParams, StarChoice, StarFinder, StarParams, Stencils, Surroundings, TorsionProblem,
+    n_monomials, row, solve,
 };
 use nmt_tri::Mesh;
 use proptest::prelude::*;
@@ -270,5 +270,43 @@ fn a_star_that_was_mended_is_opened_up_as_the_solution_has_it() {
         let found = (star.members.len(), star.outcome.order, star.radius, star.outcome.condition);
         assert_eq!(found, (used.size as usize, used.order as usize, used.radius, used.condition), "{node}");
         assert_eq!((star.asked, star.outcome.enlarged), (9, used.size > 9));
+    }
+}
+
+#[test]
+fn beside_a_hole_smaller_than_the_spacing_stars_come_from_all_sides_with_flatter_weights() {
+    let holed = |radius: f64| Section {
+        contour: Outline::rectangle([0.0, 0.0], [2.0, 1.0]),
+        holes: vec![Outline::circle([0.98, 0.52], radius)],
+    };
+    // The spacing is 0.05: in the second hole a star would fit.
+    for (radius, is_clump) in [(0.01, true), (0.08, false)] {
+        let mesh = mesh(&holed(radius), &params([41, 21], 0.2, 3));
+        let cloud = mesh.cloud();
+        let segments = cloud.boundary().loop_segments(nmt_geom::LoopId::of(1));
+        let on_hole: Vec<usize> = segments.iter().map(|segment| segment.from.index()).collect();
+        for (formulation, evening) in [(Formulation::Variational, 0.1), (Formulation::Local, 0.5)] {
+            let params = SolveParams { formulation, ..SolveParams::default() };
+            let star = |node: usize| {
+                let star = NodeStar::of(cloud, &params, NodeId::of(node)).expect("sound parameters");
+                star.expect("meshless formulations have stars")
+            };
+            let near = |node: &usize| distance(cloud.xy()[*node], [0.98, 0.52]) < radius + 0.04;
+            for node in (cloud.n_boundary()..cloud.n_nodes()).filter(near).chain(on_hole.iter().copied()) {
+                let star = star(node);
+                let n_on_hole = star.members.iter().filter(|member| on_hole.contains(&member.node.index())).count();
+                let g = star.outcome.flattening;
+                // From all sides there may be one node of those that made the clump.
+                let is_right = if g >= evening { is_clump && n_on_hole >= 1 } else { !is_clump || n_on_hole < 2 };
+                assert!(is_right, "{radius} {node} {formulation:?}: {n_on_hole} {g}");
+                // The weights shown are those used.
+                for member in &star.members[1..] {
+                    let (rho2, g2) = ((member.distance / star.radius).powi(2), g * g);
+                    let weight = (rho2 + if g > 0.0 { g2 * g2 / (rho2 + g2) } else { 0.0 }).powi(-3);
+                    assert!((member.weight / weight - 1.0).abs() < 1e-12, "{radius} {node}"); // rounding
+                }
+                assert!(star.members[0].weight.is_infinite());
+            }
+        }
     }
 }
