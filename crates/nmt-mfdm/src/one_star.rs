@@ -40,7 +40,8 @@ pub struct NodeStar {
     pub node: NodeId,
     /// Nodes asked for, the centre included.
     pub asked: usize,
-    /// How they are chosen, unless only the other choice gives a sound star, or the nearest are mostly those of a hole smaller than the spacing.
+    /// How they are chosen, unless only the other choice gives a sound star, or the nearest are those of a hole smaller than the
+    /// spacing.
     pub choice: StarChoice,
     /// What it came to: order, condition, enlarged or not, hidden nodes.
     pub outcome: StarOutcome,

@@ -57,7 +57,8 @@ pub struct StarOutcome {
     pub condition: f64,
     /// True where the node's own coefficient in its ∇² row is not negative, and no larger star mended it.
     pub wrong_sign: bool,
-    /// g of the weights of its polynomial where they are flatter than asked for, else 0; the centre's value is met all the same.
+    /// g of the weights of its polynomial to a hundredth, where they are flatter than asked for, else 0; the centre's value is met
+    /// all the same.
     pub flattening: f64,
 }
 

@@ -153,8 +153,8 @@ impl<'a> Surroundings<'a> {
         self.metric
     }
 
-    /// Whether two nodes or more of a star, ascending, are those of a hole smaller than its nodes are spaced: most of the nearest
-    /// nodes then lie on one side, and all but at one place.
+    /// Whether two nodes or more of a star, ascending, are those of holes smaller than its nodes are spaced: many of the nearest
+    /// nodes then lie at one place.
     #[inline]
     pub(crate) fn is_clumped(&self, star: &[NodeId], radius: f64) -> bool {
         // Most stars have no node on the boundary.
