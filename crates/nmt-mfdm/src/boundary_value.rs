@@ -248,11 +248,9 @@ impl Assembly<'_> {
             surroundings: around.surroundings,
             nearest: around.nearest,
             params: StarParams {
-                order: params.order,
-                size: stars.size,
                 choice: params.star_choice(mesh.cloud()),
                 smoothing: params.smoothing,
-                evening: EVEN,
+                ..StarParams::nearest(params.order, stars.size)
             },
         };
         let weak = match params.formulation {

@@ -125,13 +125,9 @@ pub(crate) fn sound_star(
                     break;
                 }
             }
-            let clumped = best.is_some_and(|best| best.clumped);
-            way = if best.is_some_and(|best| !best.wrong_sign && !best.clumped) {
-                None
-            } else {
-                let evening = clumped.then_some(demand.evening);
-                further.get_or_insert_with(|| remedies(asked, evening)).next()
-            };
+            let evening = best.is_some_and(|best| best.clumped).then_some(demand.evening);
+            let is_settled = best.is_some_and(|best| !best.wrong_sign && !best.clumped);
+            way = if is_settled { None } else { further.get_or_insert_with(|| remedies(asked, evening)).next() };
         }
         if let Some(best) = best.filter(|best| best.condition <= MAX_CONDITION) {
             let Candidate { choice, flattening, wanted, hidden, condition, wrong_sign, .. } = best;

@@ -195,8 +195,7 @@ impl<'a> SoundStars<'a> {
                 Wanted::Polynomials(_) => true, // it has no rows to tell
             }
         };
-        let (order, flattening) = (demand.order, 0.0);
-        let outcome = StarOutcome { order, enlarged: false, hidden, condition, wrong_sign, flattening };
+        let outcome = StarOutcome { order: demand.order, hidden, condition, wrong_sign, ..StarOutcome::default() };
         let is_clumped = self.finder.surroundings().is_clumped(&self.stars[lane], self.quartet.radius(lane));
         (is_sound && !wrong_sign && !is_clumped).then_some(outcome)
     }
